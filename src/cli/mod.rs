@@ -1,0 +1,1 @@
+//! Flags, colours, exit codes. The only room that prints.

@@ -1,0 +1,1 @@
+//! Recognises the format of a file; the one place that dispatches between formats.

@@ -1,0 +1,3 @@
+//! Byte edits on a file: order, overlap check, application, fresh names.
+//!
+//! Knows no grammar.

@@ -1,0 +1,1 @@
+//! The job file: read, plan, run over parts, report. The only room that uses the file system.
