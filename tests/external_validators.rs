@@ -64,7 +64,7 @@ fn triangle_step() -> String {
          #20=AXIS2_PLACEMENT_3D('',#31,#21,#22);\n#21=DIRECTION('',(0.,0.,1.));\n#22=DIRECTION('',(1.,0.,0.));\n\
          #24=EDGE_LOOP('',(#25,#26,#27));\n",
     );
-    let corners = [[0.0, 0.0], [4.0, 0.0], [0.0, 3.0]];
+    let corners: [[f64; 2]; 3] = [[0.0, 0.0], [4.0, 0.0], [0.0, 3.0]];
     for k in 0..3 {
         let ([ax, ay], [bx, by]) = (corners[k], corners[(k + 1) % 3]);
         let [point, vertex, edge, line, vector, direction] = [31, 41, 51, 61, 71, 81].map(|base| base + k);
@@ -127,7 +127,7 @@ fn openscad_accepts_a_closed_cube_in_both_formats() {
 #[test]
 fn openscad_does_not_accept_an_open_turned_or_empty_mesh() {
     let damages: [fn(&mut Mesh); 3] = [
-        |mesh| drop(mesh.triangles.pop()),
+        |mesh| mesh.triangles.truncate(11),
         |mesh| mesh.triangles.iter_mut().for_each(|t| t.swap(0, 1)),
         |mesh| mesh.triangles.clear(),
     ];
@@ -152,7 +152,10 @@ fn a_missing_program_names_the_command_that_installs_it() {
         (ask_openscad(&request).expect_err("not there"), "openscad"),
     ] {
         assert!(matches!(error, ValidateError::Missing { .. }), "{error}");
-        assert!(error.to_string().contains("apt-get install") && error.to_string().contains(package), "{error}");
+        assert!(
+            error.to_string().contains("apt-get install") && error.to_string().contains(package),
+            "{error}"
+        );
     }
 }
 
@@ -276,7 +279,8 @@ mod programs_that_misbehave {
     fn a_program_that_may_not_run_is_named() {
         let directory = scratch();
         let file = write_off(&cube(1.0), directory.path());
-        let verdict = ask_freecad(&Request { program: Some(file.as_os_str()), ..request(&file, directory.path()) });
+        let verdict =
+            ask_freecad(&Request { program: Some(file.as_os_str()), ..request(&file, directory.path()) });
         assert!(matches!(verdict, Err(ValidateError::NotRunnable { .. })), "{verdict:?}");
     }
 }

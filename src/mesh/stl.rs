@@ -17,8 +17,8 @@ const RECORD: usize = 50;
 /// # Errors
 /// Those of `out`; `InvalidInput` when there are more triangles than the format can count.
 pub fn write_binary(mesh: &Mesh, header: &str, out: &mut impl Write) -> io::Result<()> {
-    let count =
-        u32::try_from(mesh.triangles.len()).map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error))?;
+    let count = u32::try_from(mesh.triangles.len())
+        .map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error))?;
     // A header that begins with "solid" would make readers take the file for text.
     let mut head = [b' '; HEADER];
     let text = header.strip_prefix("solid").unwrap_or(header).as_bytes();
@@ -88,7 +88,8 @@ fn read_binary(records: &[u8]) -> Result<Mesh, MeshReadError> {
 }
 
 fn read_text(bytes: &[u8]) -> Result<Mesh, MeshReadError> {
-    let malformed = |place, found: &str| MeshReadError::Malformed { format: "STL", place, found: found.into() };
+    let malformed =
+        |place, found: &str| MeshReadError::Malformed { format: "STL", place, found: found.into() };
     if !bytes.trim_ascii_start().starts_with(b"solid") {
         return Err(malformed(1, "neither 'solid' nor a count that fits the length"));
     }
@@ -107,7 +108,8 @@ fn read_text(bytes: &[u8]) -> Result<Mesh, MeshReadError> {
             }
             continue;
         };
-        let numbers = std::str::from_utf8(numbers).map_err(|_| malformed(at + 1, "bytes that are not UTF-8"))?;
+        let numbers =
+            std::str::from_utf8(numbers).map_err(|_| malformed(at + 1, "bytes that are not UTF-8"))?;
         let values: Vec<f64> = numbers.split_whitespace().map_while(|word| word.parse().ok()).collect();
         let [x, y, z] = values[..] else { return Err(malformed(at + 1, "vertex without three numbers")) };
         corners.push(Point3::new(x, y, z));

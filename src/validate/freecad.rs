@@ -58,7 +58,9 @@ pub fn ask_freecad(request: &Request) -> Result<Verdict, ValidateError> {
 /// An answer of an earlier run must not pass for this one's.
 fn remove_old(path: &Path) -> Result<(), ValidateError> {
     match std::fs::remove_file(path) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(ValidateError::scratch(path)(error)),
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            Err(ValidateError::scratch(path)(error))
+        }
         _ => Ok(()),
     }
 }

@@ -20,7 +20,9 @@ use std::path::Path;
 use std::time::Duration;
 
 /// A program that gives verdicts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, schemars::JsonSchema)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, schemars::JsonSchema,
+)]
 #[serde(rename_all = "lowercase")]
 pub enum Validator {
     /// FreeCAD without its window, for STEP and IGES.
@@ -204,7 +206,9 @@ pub enum ValidateError {
         output: String,
     },
     /// The program ended and did not write its answer, or a garbled one.
-    #[error("program '{program}' ended ({status}) without a usable answer, {reason}; its last words: {output}")]
+    #[error(
+        "program '{program}' ended ({status}) without a usable answer, {reason}; its last words: {output}"
+    )]
     NoSentinel {
         /// Program.
         program: String,

@@ -90,7 +90,11 @@ fn judge(mesh: &Mesh, format: &str, finished: Finished, result: &Path) -> Result
 /// Lines in which OpenSCAD complains.
 fn complaints(output: &str) -> Vec<String> {
     let bad = ["ERROR", "WARNING", "not closed", "is empty"];
-    output.lines().filter(|line| bad.iter().any(|word| line.contains(word))).map(|l| l.trim().to_owned()).collect()
+    output
+        .lines()
+        .filter(|line| bad.iter().any(|word| line.contains(word)))
+        .map(|l| l.trim().to_owned())
+        .collect()
 }
 
 /// What the operation changed, though it should have changed nothing.
