@@ -80,7 +80,12 @@ impl Code {
 
     /// A diagnostic of this code about one entity.
     #[must_use]
-    pub fn note_on(self, entity: impl std::fmt::Display, span: Span, message: impl Into<String>) -> Diagnostic {
+    pub fn note_on(
+        self,
+        entity: impl std::fmt::Display,
+        span: Span,
+        message: impl Into<String>,
+    ) -> Diagnostic {
         Diagnostic { entity: Some(entity.to_string()), ..self.note(span, message) }
     }
 }

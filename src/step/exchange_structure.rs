@@ -79,7 +79,10 @@ impl ExchangeStructure {
     /// The records of the header: `FILE_DESCRIPTION`, `FILE_NAME`, `FILE_SCHEMA` and others.
     pub fn header(&self) -> impl Iterator<Item = SimpleRecord<'_>> {
         let bytes = self.source.bytes();
-        self.index.header.iter().filter_map(|span| simple_record(bytes, span.start as usize, content_end(bytes, *span)))
+        self.index
+            .header
+            .iter()
+            .filter_map(|span| simple_record(bytes, span.start as usize, content_end(bytes, *span)))
     }
 
     /// The header record of a keyword; case is not looked at.
@@ -148,7 +151,11 @@ impl ExchangeStructure {
     /// Where new records go: before `ENDSEC` of the last data section. `None` without a data section.
     #[must_use]
     pub fn insertion_offset(&self) -> Option<u32> {
-        self.sections().iter().rev().find(|section| section.kind == SectionKind::Data).map(|section| section.body.end)
+        self.sections()
+            .iter()
+            .rev()
+            .find(|section| section.kind == SectionKind::Data)
+            .map(|section| section.body.end)
     }
 }
 
@@ -160,7 +167,7 @@ pub struct Instance<'a> {
 }
 
 impl<'a> Instance<'a> {
-    fn bytes(&self) -> &'a [u8] {
+    pub(super) fn bytes(&self) -> &'a [u8] {
         self.structure.source.bytes()
     }
 
@@ -196,7 +203,7 @@ impl<'a> Instance<'a> {
     }
 
     /// What stands behind `=` and the scope, and before `;`.
-    fn body(&self) -> (usize, usize) {
+    pub(super) fn body(&self) -> (usize, usize) {
         let bytes = self.bytes();
         let span = self.span();
         let end = content_end(bytes, span);

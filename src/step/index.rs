@@ -148,7 +148,8 @@ fn statement_end(bytes: &[u8], mut at: usize) -> End {
 fn string_end_or_damage(bytes: &[u8], at: usize) -> Result<usize, End> {
     let end = syntax::string_end(bytes, at);
     let plausible = end.and_then(|end| bytes.get(end));
-    if plausible.is_some_and(|&next| matches!(next, b',' | b')' | b'/' | b';') || syntax::is_whitespace(next)) {
+    if plausible.is_some_and(|&next| matches!(next, b',' | b')' | b'/' | b';') || syntax::is_whitespace(next))
+    {
         return end.ok_or(End::Missing);
     }
     let inside = &bytes[..end.unwrap_or(bytes.len())];
@@ -431,7 +432,9 @@ impl Indexer<'_, '_> {
                     }
                 }
                 Some(_) if self.at_section_border(start) => break,
-                Some(_) if !self.scopes.is_empty() && self.word_at(start).eq_ignore_ascii_case(b"ENDSCOPE") => {
+                Some(_)
+                    if !self.scopes.is_empty() && self.word_at(start).eq_ignore_ascii_case(b"ENDSCOPE") =>
+                {
                     self.close_scope(start);
                     continue;
                 }
@@ -464,13 +467,20 @@ impl Indexer<'_, '_> {
 
     fn record(&mut self, start: usize, head: &Head) {
         match self.bytes.get(head.body) {
-            Some(b'&') if self.bytes[head.body + 1..].get(..5).is_some_and(|w| w.eq_ignore_ascii_case(b"SCOPE")) => {
+            Some(b'&')
+                if self.bytes[head.body + 1..].get(..5).is_some_and(|w| w.eq_ignore_ascii_case(b"SCOPE")) =>
+            {
                 return self.open_scope(start, head);
             }
             Some(b'A'..=b'Z' | b'(' | b'!' | b'_') | None => {}
             Some(b'a'..=b'z') => self.lower_case(head.body),
             Some(_) => {
-                self.note(Code::DamagedRecord, start, head.body, "expected an entity keyword or a parenthesis");
+                self.note(
+                    Code::DamagedRecord,
+                    start,
+                    head.body,
+                    "expected an entity keyword or a parenthesis",
+                );
             }
         }
         match statement_end(self.bytes, head.body) {
@@ -486,7 +496,8 @@ impl Indexer<'_, '_> {
     fn push(&mut self, start: usize, end: usize, head: &Head) {
         self.at = end;
         let Some(name) = head.name else {
-            let message = "the instance name exceeds 64 bits; the record is carried, but nothing can refer to it";
+            let message =
+                "the instance name exceeds 64 bits; the record is carried, but nothing can refer to it";
             return self.note(Code::InstanceNameTooLarge, start, end, message);
         };
         let position = u32::try_from(self.records.len()).expect("fewer records than bytes");
@@ -499,12 +510,21 @@ impl Indexer<'_, '_> {
 
     fn duplicate(&mut self, name: u64, start: usize, end: usize) {
         let message = format!("#{name} is defined again; the first definition is used");
-        self.sink.report(Code::DuplicateInstance.note_on(format_args!("#{name}"), syntax::span(start, end), message));
+        self.sink.report(Code::DuplicateInstance.note_on(
+            format_args!("#{name}"),
+            syntax::span(start, end),
+            message,
+        ));
     }
 
     fn open_scope(&mut self, start: usize, head: &Head) {
         let behind = head.body + b"&SCOPE".len();
-        self.note(Code::ScopeStructure, head.body, behind, "a scope, withdrawn from the standard since edition 2");
+        self.note(
+            Code::ScopeStructure,
+            head.body,
+            behind,
+            "a scope, withdrawn from the standard since edition 2",
+        );
         let position = self.records.len();
         self.push(start, behind, head);
         if self.records.len() > position {
@@ -540,8 +560,10 @@ impl Indexer<'_, '_> {
     }
 
     fn sorted_names(&mut self) -> NameTable {
-        let name = |record: &RecordSpan| record_head(self.bytes, record.start as usize).and_then(|head| head.name);
-        let pairs = (0_u32..).zip(&self.records).filter_map(|(position, record)| Some((name(record)?, position)));
+        let name =
+            |record: &RecordSpan| record_head(self.bytes, record.start as usize).and_then(|head| head.name);
+        let pairs =
+            (0_u32..).zip(&self.records).filter_map(|(position, record)| Some((name(record)?, position)));
         let mut duplicates = Vec::new();
         let table = NameTable::sorted(pairs.collect(), |position| duplicates.push(position));
         duplicates.sort_unstable();

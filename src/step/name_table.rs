@@ -33,7 +33,9 @@ impl NameTable {
     /// The greatest name that has a record.
     pub(super) fn greatest(&self) -> Option<u64> {
         match self {
-            Self::Dense(table) => table.iter().rposition(|&position| position != EMPTY).map(|name| name as u64),
+            Self::Dense(table) => {
+                table.iter().rposition(|&position| position != EMPTY).map(|name| name as u64)
+            }
             Self::Sorted { names, .. } => names.last().copied(),
         }
     }

@@ -138,7 +138,9 @@ pub(crate) fn whitespace_end(bytes: &[u8], mut at: usize) -> usize {
     while let Some(&byte) = bytes.get(at) {
         if is_whitespace(byte) {
             at += 1;
-        } else if byte == b'\\' && is_print_control(bytes, at) || byte == 0xef && is_byte_order_mark(bytes, at) {
+        } else if byte == b'\\' && is_print_control(bytes, at)
+            || byte == 0xef && is_byte_order_mark(bytes, at)
+        {
             at += 3;
         } else {
             break;
