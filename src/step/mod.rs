@@ -2,6 +2,7 @@
 
 mod alphabet;
 pub mod code;
+pub mod edit;
 pub mod exchange_structure;
 mod index;
 pub mod literal;
@@ -16,6 +17,5 @@ pub mod write;
 pub use code::Code;
 pub use exchange_structure::{ExchangeStructure, Instance, InstanceName, SimpleRecord};
 pub use parameter::{Parameter, Parameters, Token};
-
 pub use reverse_index::ReverseIndex;
 pub use section::{Section, SectionKind};
