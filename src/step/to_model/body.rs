@@ -248,7 +248,7 @@ impl<'p> Bodies<'p> {
             return builder.report(ModelCode::NotReadYet, name, message);
         }
         match curve::resolve(builder.scope, name, Trims::Keep) {
-            Ok((name, _)) if seen.insert(name) => self.free_curves.push(builder.curve(name)),
+            Ok((name, _)) if seen.insert(name) => self.free_curves.push(builder.curve(name, name)),
             Ok(_) => {}
             Err(error) => builder.report(error.geometry_code(), name, error.to_string()),
         }

@@ -71,13 +71,19 @@ impl<'a, 's> Builder<'a, 's> {
         self.sink.report(code.at(self.scope.file, name, message));
     }
 
-    fn report_geometry(&mut self, name: InstanceName, entity: &str, error: &ReadError) {
-        self.report(error.geometry_code(), name, format!("{entity}: {error}"));
+    /// Reports at the geometry, or at its user when the geometry's record does not exist.
+    fn report_geometry(&mut self, name: InstanceName, user: InstanceName, error: &ReadError) {
+        let at = if self.scope.file.instance(name).is_some() { name } else { user };
+        let entity = self.entity_name(at);
+        self.report(error.geometry_code(), at, format!("{entity}: {error}"));
     }
 
     fn report_topology(&mut self, name: InstanceName, error: &ReadError) {
-        let entity = self.entity_name(name);
-        self.report(error.topology_code(), name, format!("{entity}: {error}"));
+        let message = match self.entity_name(name) {
+            entity if entity.is_empty() => error.to_string(),
+            entity => format!("{entity}: {error}"),
+        };
+        self.report(error.topology_code(), name, message);
     }
 
     fn entity_name(&self, name: InstanceName) -> String {
@@ -85,7 +91,7 @@ impl<'a, 's> Builder<'a, 's> {
     }
 
     /// The curve of a record that is no surface curve; read once.
-    pub(super) fn curve(&mut self, name: InstanceName) -> CurveId {
+    pub(super) fn curve(&mut self, name: InstanceName, user: InstanceName) -> CurveId {
         if let Some(&id) = self.curves.get(&name) {
             return id;
         }
@@ -93,7 +99,7 @@ impl<'a, 's> Builder<'a, 's> {
             Ok(curve) => Carried::Read(curve),
             Err(error) => {
                 let entity = self.entity_name(name);
-                self.report_geometry(name, &entity, &error);
+                self.report_geometry(name, user, &error);
                 Carried::Unread { entity, reason: error.to_string() }
             }
         };
@@ -103,7 +109,7 @@ impl<'a, 's> Builder<'a, 's> {
         id
     }
 
-    fn surface(&mut self, name: InstanceName) -> SurfaceId {
+    fn surface(&mut self, name: InstanceName, user: InstanceName) -> SurfaceId {
         if let Some(&id) = self.surfaces.get(&name) {
             return id;
         }
@@ -111,7 +117,7 @@ impl<'a, 's> Builder<'a, 's> {
             Ok(surface) => Carried::Read(surface),
             Err(error) => {
                 let entity = self.entity_name(name);
-                self.report_geometry(name, &entity, &error);
+                self.report_geometry(name, user, &error);
                 Carried::Unread { entity, reason: error.to_string() }
             }
         };
@@ -161,7 +167,7 @@ impl<'a, 's> Builder<'a, 's> {
         let (curve_name, around) =
             curve::resolve(self.scope, holder.reference("edge_geometry")?, Trims::Follow)?;
         let same_sense = holder.boolean("same_sense")?;
-        let curve = self.curve(curve_name);
+        let curve = self.curve(curve_name, name);
         self.origins.edges.push(origin(name));
         let id = self.brep.edges.push(Edge { curve, start, end, same_sense });
         if let Some(surface_curve) = around {
@@ -329,7 +335,7 @@ impl<'a, 's> Builder<'a, 's> {
                 return None;
             }
         };
-        let surface = self.surface(record.geometry);
+        let surface = self.surface(record.geometry, record.view.name());
         let read = self.brep.surfaces[surface].read();
         let scale = read.map(|surface| curve2d::parameter_scale(surface, self.scope.radians));
         let on = FaceSurface { name: record.geometry, scale };
