@@ -1,8 +1,16 @@
-//! Vectors, frames, roots, quadrature, sparse assembly and solves.
+//! Vectors, frames, affine maps, roots, quadrature, sparse and banded solves.
 //!
 //! The only room that names the matrix crates; it knows nothing of curves or files.
 
+pub mod affine;
+pub mod banded;
+pub mod bounds;
 pub mod frame;
+pub mod quadrature;
+pub mod sparse;
 
+pub use affine::{Affine, cofactor, minimal_rotation};
+pub use bounds::BoundingBox;
 pub use frame::Frame;
 pub use nalgebra::{Matrix2, Matrix3, Point2, Point3, Vector2, Vector3, Vector4};
+pub use sprs::{CsMat, TriMat};

@@ -1,1 +1,21 @@
 //! ISO 10303-21 exchange files and the entities of AP203, AP214 and AP242 that carry geometry.
+
+mod alphabet;
+pub mod code;
+pub mod exchange_structure;
+mod index;
+pub mod literal;
+mod name_table;
+pub mod parameter;
+pub mod reverse_index;
+pub mod section;
+pub mod string;
+pub mod syntax;
+pub mod write;
+
+pub use code::Code;
+pub use exchange_structure::{ExchangeStructure, Instance, InstanceName, SimpleRecord};
+pub use parameter::{Parameter, Parameters, Token};
+
+pub use reverse_index::ReverseIndex;
+pub use section::{Section, SectionKind};

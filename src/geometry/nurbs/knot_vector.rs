@@ -56,7 +56,22 @@ pub enum KnotVectorError {
         /// Count of multiplicities.
         multiplicities: usize,
     },
+    /// A knot to be inserted lies outside the domain or is not a number.
+    #[error("knot {value} to be inserted lies outside the domain")]
+    OutsideDomain {
+        /// The knot.
+        value: f64,
+    },
+    /// A scale of the parameter is zero, negative or not finite.
+    #[error("the parameter cannot be scaled by {factor}")]
+    Scale {
+        /// The factor.
+        factor: f64,
+    },
 }
+
+/// Knots closer than this part of the whole range count as one.
+pub const COINCIDENT: f64 = 1e-10;
 
 impl KnotVector {
     /// Highest degree accepted: above it, double precision loses the curve.
@@ -161,5 +176,138 @@ impl KnotVector {
     pub fn is_clamped(&self) -> bool {
         let (start, end) = self.domain();
         self.knots[0] >= start && self.knots[self.knots.len() - 1] <= end
+    }
+
+    /// Index of the span that holds `u` (The NURBS Book A2.1): the last `k` in `p ..= n - 1` with
+    /// `knots[k] <= u` and a span that is not empty.
+    ///
+    /// The end of the domain belongs to the last span; parameters outside the domain to the nearest one.
+    #[must_use]
+    pub fn span(&self, u: f64) -> usize {
+        let (p, n) = (self.degree, self.n_basis());
+        let mut k = self.knots.partition_point(|&knot| knot <= u).saturating_sub(1).clamp(p, n - 1);
+        while k > p && self.knots[k] >= self.knots[k + 1] {
+            k -= 1;
+        }
+        while k + 1 < n && self.knots[k] >= self.knots[k + 1] {
+            k += 1;
+        }
+        k
+    }
+
+    /// Indices `k` of the spans `[knots[k], knots[k + 1]]` of the domain that are not empty.
+    pub fn spans(&self) -> impl Iterator<Item = usize> + '_ {
+        (self.degree..self.n_basis()).filter(|&k| self.knots[k] < self.knots[k + 1])
+    }
+
+    /// Greville abscissae `(knots[i + 1] + … + knots[i + p]) / p`, one for each control point.
+    #[must_use]
+    pub fn greville(&self) -> Vec<f64> {
+        let p = self.degree;
+        let mean = |i: usize| self.knots[i + 1..=i + p].iter().sum::<f64>() / p as f64;
+        let (start, end) = (self.knots[0], self.knots[self.knots.len() - 1]);
+        (0..self.n_basis()).map(|i| mean(i).clamp(start, end)).collect()
+    }
+
+    /// Distinct knots with multiplicities; knots within `1e-10` of the range of the first of a group
+    /// join it.
+    #[must_use]
+    pub fn distinct(&self) -> (Vec<f64>, Vec<usize>) {
+        let tolerance = COINCIDENT * (self.knots[self.knots.len() - 1] - self.knots[0]);
+        let (mut values, mut counts): (Vec<f64>, Vec<usize>) = (Vec::new(), Vec::new());
+        for &knot in &self.knots {
+            match (values.last(), counts.last_mut()) {
+                (Some(&last), Some(count)) if knot - last <= tolerance => *count += 1,
+                _ => {
+                    values.push(knot);
+                    counts.push(1);
+                }
+            }
+        }
+        (values, counts)
+    }
+
+    /// How often exactly `u` occurs.
+    #[must_use]
+    pub fn multiplicity(&self, u: f64) -> usize {
+        self.knots.partition_point(|&k| k <= u) - self.knots.partition_point(|&k| k < u)
+    }
+
+    /// With further knots, in any order, each within the domain.
+    ///
+    /// # Errors
+    /// [`KnotVectorError::OutsideDomain`]; [`KnotVectorError::Multiplicity`] above `degree + 1`.
+    pub fn with_inserted(&self, more: &[f64]) -> Result<Self, KnotVectorError> {
+        let (start, end) = self.domain();
+        if let Some(&value) = more.iter().find(|&&x| !(x >= start && x <= end)) {
+            return Err(KnotVectorError::OutsideDomain { value });
+        }
+        let mut knots = self.knots.clone();
+        knots.extend_from_slice(more);
+        knots.sort_by(f64::total_cmp);
+        Self::new(self.degree, knots)
+    }
+
+    /// Knots `factor · k + shift`, for an affine change of the parameter.
+    ///
+    /// # Errors
+    /// [`KnotVectorError::Scale`] unless `factor` is positive; others when knots fall together or overflow.
+    pub fn affine(&self, factor: f64, shift: f64) -> Result<Self, KnotVectorError> {
+        if !(factor > 0.0 && factor.is_finite()) {
+            return Err(KnotVectorError::Scale { factor });
+        }
+        Self::new(self.degree, self.knots.iter().map(|k| factor * k + shift).collect())
+    }
+
+    /// Knots mirrored in the middle of the domain, which stays.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        let (start, end) = self.domain();
+        let mirror = |&k: &f64| {
+            // The ends swap exactly, whatever `start + end` rounds to.
+            if k == start {
+                end
+            } else if k == end {
+                start
+            } else {
+                start + (end - k)
+            }
+        };
+        let mut knots: Vec<f64> = self.knots.iter().rev().map(mirror).collect();
+        // Rounding may turn two knots an ulp apart round; it never moves one further.
+        for i in 1..knots.len() {
+            knots[i] = knots[i].max(knots[i - 1]);
+        }
+        Self { degree: self.degree, knots }
+    }
+
+    /// The elevated knot vector: `more` degrees higher, every exactly distinct knot that much oftener.
+    ///
+    /// # Errors
+    /// [`KnotVectorError::Degree`] above [`Self::MAX_DEGREE`].
+    pub fn elevated(&self, more: usize) -> Result<Self, KnotVectorError> {
+        let mut knots = Vec::with_capacity(self.knots.len() * (1 + more));
+        for group in self.knots.chunk_by(|a, b| a == b) {
+            knots.extend(std::iter::repeat_n(group[0], group.len() + more));
+        }
+        if self.is_clamped() {
+            return Self::new(self.degree + more, knots);
+        }
+        // Outside the domain only `degree` knots on each side count: drop what elevation added beyond.
+        let (start, end) = self.domain();
+        let degree = self.degree + more;
+        let first = knots.partition_point(|&k| k <= start).saturating_sub(degree + 1);
+        let last = (knots.partition_point(|&k| k < end) + degree + 1).min(knots.len());
+        Self::new(degree, knots[first..last].to_vec())
+    }
+
+    /// Wraps `u` by the length of the domain into it.
+    #[must_use]
+    pub fn wrapped(&self, u: f64) -> f64 {
+        let (start, end) = self.domain();
+        if u >= start && u <= end {
+            return u;
+        }
+        (start + (u - start).rem_euclid(end - start)).clamp(start, end)
     }
 }

@@ -3,12 +3,25 @@
 //! `knot_vector` is the one holder of knots; `curve` and `surface` are the nets. Nets are flat arrays of
 //! homogeneous points `(w x, w y, …, w)`.
 
+pub mod basis;
 pub mod curve;
+mod degree;
+pub mod evaluate;
+pub mod gram;
+pub mod interpolate;
 pub mod knot_vector;
+pub mod project;
+mod refine;
+mod reshape;
 pub mod surface;
 
+pub use basis::LocalBasis;
 pub use curve::{NurbsCurve, NurbsCurve2, NurbsCurve3};
+pub use evaluate::SurfaceDerivatives;
+pub use gram::gram;
+pub use interpolate::{GrevilleCollocation, interpolate_grid};
 pub use knot_vector::{KnotVector, KnotVectorError};
+pub use project::{CurveProjection, SurfaceLocator, SurfaceProjection, Wrap};
 pub use surface::NurbsSurface;
 
 /// The net does not fit the knots, or a weight is not a positive number.

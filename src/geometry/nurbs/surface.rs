@@ -25,6 +25,11 @@ impl NurbsSurface {
         Ok(Self { knots_u, knots_v, net })
     }
 
+    /// Takes a net that keeps the invariants by construction.
+    pub(super) fn new_unchecked(knots_u: KnotVector, knots_v: KnotVector, net: Vec<[f64; 4]>) -> Self {
+        Self { knots_u, knots_v, net }
+    }
+
     /// Knots of the first parameter.
     #[must_use]
     pub fn knots_u(&self) -> &KnotVector {

@@ -1,0 +1,365 @@
+//! Closest points on B-spline curves and surfaces.
+//!
+//! Newton's method on the squared distance with the full Hessian, where that is positive definite, else
+//! Gauss-Newton (The NURBS Book 6.1), held to the domain or wrapped round it, and only ever downhill.
+//! Seeds without a guess come from a branch and bound over spans: a span lies in the box of the control
+//! points over it, so that a span whose box is further than the best point found needs no look.
+
+use super::evaluate::SurfaceDerivatives;
+use super::{KnotVector, NurbsCurve3, NurbsSurface};
+use crate::math::{BoundingBox, Point3};
+
+/// A closest point on a curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CurveProjection {
+    /// Parameter, within the domain.
+    pub t: f64,
+    /// Point of the curve.
+    pub point: Point3<f64>,
+    /// Its distance from the point that was projected.
+    pub distance: f64,
+}
+
+/// A closest point on a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfaceProjection {
+    /// First parameter, within the domain.
+    pub u: f64,
+    /// Second parameter, within the domain.
+    pub v: f64,
+    /// Point of the surface.
+    pub point: Point3<f64>,
+    /// Its distance from the point that was projected.
+    pub distance: f64,
+}
+
+/// Directions in which a search may pass over the seam of a closed surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Wrap {
+    /// Along `u`.
+    pub u: bool,
+    /// Along `v`.
+    pub v: bool,
+}
+
+/// Steps allowed; a good seed takes 3 to 6.
+const MAX_STEPS: usize = 40;
+/// Halvings of a step that leads uphill.
+const MAX_HALVINGS: usize = 12;
+/// A step shorter than this part of the coordinates' magnitude ends the search: a few rounding errors.
+const STEP_END: f64 = 4.0 * f64::EPSILON;
+/// Cosine between residual and tangents at which the foot point is exact to rounding.
+const COSINE_END: f64 = 1e-15;
+/// Part of the domain that one step may cross: keeps a wild first step from leaving the basin.
+const MAX_PART: f64 = 0.25;
+/// Rise of the squared distance, relative, that counts as rounding and not as uphill.
+const RISE: f64 = 1e-14;
+
+impl NurbsCurve3 {
+    /// The foot point reached from a seed: a local minimum of the distance over the domain.
+    #[must_use]
+    pub fn closest_from(&self, target: &Point3<f64>, seed: f64) -> CurveProjection {
+        self.closest_between(target, seed, self.domain())
+    }
+
+    /// As [`closest_from`](Self::closest_from), over a part of the domain.
+    #[must_use]
+    pub fn closest_between(&self, target: &Point3<f64>, seed: f64, range: (f64, f64)) -> CurveProjection {
+        let (start, end) = range;
+        let mut t = if seed.is_nan() { start } else { seed.clamp(start, end) };
+        let mut now = self.derivatives(t);
+        let mut square = (now[0] - target.coords).norm_squared();
+        for _ in 0..MAX_STEPS {
+            let residual = now[0] - target.coords;
+            let slope = now[1].dot(&residual);
+            let speed = now[1].norm_squared();
+            let outward = (t <= start && slope > 0.0) || (t >= end && slope < 0.0);
+            if outward || slope.abs() <= COSINE_END * speed.sqrt() * residual.norm() || speed <= 0.0 {
+                break;
+            }
+            let bent = speed + now[2].dot(&residual);
+            let limit = MAX_PART * (end - start);
+            let mut step = (-slope / if bent > 0.0 { bent } else { speed }).clamp(-limit, limit);
+            let mut moved = false;
+            for _ in 0..MAX_HALVINGS {
+                let next = (t + step).clamp(start, end);
+                let trial = self.derivatives(next);
+                let trial_square = (trial[0] - target.coords).norm_squared();
+                if trial_square <= square * (1.0 + RISE) {
+                    moved = next != t && trial_square < square;
+                    let length = (trial[0] - now[0]).norm();
+                    if moved {
+                        (t, now, square) = (next, trial, trial_square);
+                    }
+                    moved &= length > STEP_END * magnitude(target, &now[0]);
+                    break;
+                }
+                step *= 0.5;
+            }
+            if !moved {
+                break;
+            }
+        }
+        CurveProjection { t, point: Point3::from(now[0]), distance: square.sqrt() }
+    }
+
+    /// The closest point over the whole domain.
+    #[must_use]
+    pub fn closest(&self, target: &Point3<f64>) -> CurveProjection {
+        let knots = self.knots();
+        let p = knots.degree();
+        let points: Vec<Point3<f64>> = self.control_points().collect();
+        let mut order: Vec<(f64, usize)> = knots
+            .spans()
+            .map(|k| (BoundingBox::of(&points[k - p..=k]).distance_squared(target), k))
+            .collect();
+        order.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (start, end) = self.domain();
+        let mut best = self.closest_from(target, start);
+        for seed in [end].into_iter().chain(order.iter().flat_map(|&(_, k)| samples_of(knots, k))) {
+            // One cheap evaluation tells whether a seed is worth Newton's steps.
+            let span = knots.span(seed);
+            let spread = BoundingBox::of(&points[span - p..=span]).diagonal();
+            let away = (self.point_at(seed) - target).norm();
+            if away <= best.distance + spread {
+                let found = self.closest_from(target, seed);
+                if found.distance < best.distance {
+                    best = found;
+                }
+            }
+        }
+        best
+    }
+}
+
+/// Greatest absolute coordinate in play, for steps relative to rounding.
+fn magnitude(target: &Point3<f64>, point: &crate::math::Vector3<f64>) -> f64 {
+    target.coords.amax().max(point.amax())
+}
+
+/// Sample parameters inside span `k`: one more than the degree, at least 3.
+fn samples_of(knots: &KnotVector, k: usize) -> impl Iterator<Item = f64> + use<> {
+    let (low, high) = (knots.knots()[k], knots.knots()[k + 1]);
+    let count = (knots.degree() + 1).max(3);
+    (0..count).map(move |i| low + (high - low) * ((i as f64 + 0.5) / count as f64))
+}
+
+/// Where a search on a surface stands.
+struct Stand {
+    u: f64,
+    v: f64,
+    at: SurfaceDerivatives,
+    square: f64,
+}
+
+impl NurbsSurface {
+    /// The foot point reached from a seed: a local minimum of the distance over the domain.
+    #[must_use]
+    pub fn closest_from(&self, target: &Point3<f64>, seed: (f64, f64), wrap: Wrap) -> SurfaceProjection {
+        let place =
+            |u: f64, v: f64| (place_in(self.knots_u(), u, wrap.u), place_in(self.knots_v(), v, wrap.v));
+        let stand = |(u, v): (f64, f64)| {
+            let at = self.derivatives(u, v);
+            Stand { u, v, at, square: (at.point - target).norm_squared() }
+        };
+        let mut now = stand(place(seed.0, seed.1));
+        for _ in 0..MAX_STEPS {
+            let Some((mut du, mut dv)) = self.downhill(&now, target, wrap) else { break };
+            let mut moved = false;
+            for _ in 0..MAX_HALVINGS {
+                let trial = stand(place(now.u + du, now.v + dv));
+                if trial.square <= now.square * (1.0 + RISE) {
+                    let length = (trial.at.point - now.at.point).norm();
+                    let closer = trial.square < now.square;
+                    let end = STEP_END * magnitude(target, &trial.at.point.coords);
+                    if closer {
+                        now = trial;
+                    }
+                    moved = closer && length > end;
+                    break;
+                }
+                (du, dv) = (0.5 * du, 0.5 * dv);
+            }
+            if !moved {
+                break;
+            }
+        }
+        SurfaceProjection { u: now.u, v: now.v, point: now.at.point, distance: now.square.sqrt() }
+    }
+
+    /// Newton's step, with parameters that are held at a bound left alone; `None` at a minimum.
+    fn downhill(&self, now: &Stand, target: &Point3<f64>, wrap: Wrap) -> Option<(f64, f64)> {
+        let at = &now.at;
+        let r = at.point - target;
+        let (gu, gv) = (at.du.dot(&r), at.dv.dot(&r));
+        let (uu, uv, vv) = (at.du.norm_squared(), at.du.dot(&at.dv), at.dv.norm_squared());
+        let ((u0, u1), (v0, v1)) = self.domain();
+        let distance = r.norm();
+        let free_u = free(now.u, (u0, u1), gu, wrap.u) && gu.abs() > COSINE_END * uu.sqrt() * distance;
+        let free_v = free(now.v, (v0, v1), gv, wrap.v) && gv.abs() > COSINE_END * vv.sqrt() * distance;
+        let (hu, hm, hv) = (uu + r.dot(&at.duu), uv + r.dot(&at.duv), vv + r.dot(&at.dvv));
+        let held_u = !free(now.u, (u0, u1), gu, wrap.u);
+        let held_v = !free(now.v, (v0, v1), gv, wrap.v);
+        let (du, dv) = match (held_u, held_v) {
+            _ if !free_u && !free_v => return None,
+            (true, _) => (0.0, -gv / if hv > 0.0 { hv } else { vv }),
+            (_, true) => (-gu / if hu > 0.0 { hu } else { uu }, 0.0),
+            _ => solve_two((hu, hm, hv), (gu, gv))
+                .or_else(|| solve_two((uu, uv, vv), (gu, gv)))
+                .unwrap_or((if uu > 0.0 { -gu / uu } else { 0.0 }, if vv > 0.0 { -gv / vv } else { 0.0 })),
+        };
+        let part = (du.abs() / (MAX_PART * (u1 - u0))).max(dv.abs() / (MAX_PART * (v1 - v0)));
+        let shrink = if part > 1.0 { 1.0 / part } else { 1.0 };
+        (du.is_finite() && dv.is_finite()).then_some((du * shrink, dv * shrink))
+    }
+}
+
+/// Determinant, relative to the diagonal's product, below which a 2 x 2 Hessian counts as singular.
+const SINGULAR: f64 = 1e-12;
+
+/// `-H⁻¹ g` for a positive definite `H`.
+fn solve_two(h: (f64, f64, f64), g: (f64, f64)) -> Option<(f64, f64)> {
+    let det = h.0 * h.2 - h.1 * h.1;
+    let definite = h.0 > 0.0 && h.2 > 0.0 && det > SINGULAR * h.0 * h.2;
+    definite.then(|| (-(h.2 * g.0 - h.1 * g.1) / det, -(h.0 * g.1 - h.1 * g.0) / det))
+}
+
+/// Whether a parameter may follow the descent: not at a bound that the descent points out of.
+fn free(x: f64, (start, end): (f64, f64), slope: f64, wraps: bool) -> bool {
+    wraps || !((x <= start && slope > 0.0) || (x >= end && slope < 0.0))
+}
+
+fn place_in(knots: &KnotVector, x: f64, wraps: bool) -> f64 {
+    let (start, end) = knots.domain();
+    if x.is_nan() {
+        start
+    } else if wraps {
+        knots.wrapped(x)
+    } else {
+        x.clamp(start, end)
+    }
+}
+
+/// Greatest count of samples that a locator keeps: 24 MB.
+const MAX_SAMPLES: usize = 1 << 20;
+
+/// Finds closest points on one surface without a guess. Built once, asked often.
+#[derive(Debug, Clone)]
+pub struct SurfaceLocator<'a> {
+    surface: &'a NurbsSurface,
+    wrap: Wrap,
+    us: Vec<f64>,
+    vs: Vec<f64>,
+    points: Vec<Point3<f64>>,
+    cells: Vec<Cell>,
+}
+
+/// A span rectangle: the box of its control points and its ranges of samples.
+#[derive(Debug, Clone)]
+struct Cell {
+    bounds: BoundingBox,
+    rows: (usize, usize),
+    columns: (usize, usize),
+}
+
+impl<'a> SurfaceLocator<'a> {
+    /// Samples a surface; `wrap` names the directions in which it is closed.
+    #[must_use]
+    pub fn new(surface: &'a NurbsSurface, wrap: Wrap) -> Self {
+        let spans_u: Vec<usize> = surface.knots_u().spans().collect();
+        let spans_v: Vec<usize> = surface.knots_v().spans().collect();
+        let (mut per_u, mut per_v) = (surface.knots_u().degree() + 1, surface.knots_v().degree() + 1);
+        (per_u, per_v) = (per_u.max(3), per_v.max(3));
+        while (spans_u.len() * per_u).saturating_mul(spans_v.len() * per_v) > MAX_SAMPLES && per_u * per_v > 1
+        {
+            (per_u, per_v) = ((per_u / 2).max(1), (per_v / 2).max(1));
+        }
+        let us = span_samples(surface.knots_u(), &spans_u, per_u);
+        let vs = span_samples(surface.knots_v(), &spans_v, per_v);
+        let points = surface.grid(&us, &vs);
+        let control: Vec<Point3<f64>> = surface.control_points().collect();
+        let (p, q, nv) = (surface.knots_u().degree(), surface.knots_v().degree(), surface.shape().1);
+        let mut cells = Vec::with_capacity(spans_u.len() * spans_v.len());
+        for (a, &su) in spans_u.iter().enumerate() {
+            for (b, &sv) in spans_v.iter().enumerate() {
+                let mut bounds = BoundingBox::EMPTY;
+                for i in su - p..=su {
+                    bounds.merge(&BoundingBox::of(&control[i * nv + sv - q..=i * nv + sv]));
+                }
+                let (rows, columns) = ((a * per_u, (a + 1) * per_u), (b * per_v, (b + 1) * per_v));
+                cells.push(Cell { bounds, rows, columns });
+            }
+        }
+        Self { surface, wrap, us, vs, points, cells }
+    }
+
+    /// The closest point over the whole domain.
+    #[must_use]
+    pub fn closest(&self, target: &Point3<f64>) -> SurfaceProjection {
+        let bounds: Vec<f64> = self.cells.iter().map(|c| c.bounds.distance_squared(target)).collect();
+        let nearest = (0..bounds.len()).min_by(|&a, &b| bounds[a].total_cmp(&bounds[b])).unwrap_or(0);
+        let mut best = self.descend(self.best_sample(nearest, target).1, target);
+        let mut order: Vec<usize> = (0..bounds.len())
+            .filter(|&c| c != nearest && bounds[c] < best.distance * best.distance)
+            .collect();
+        order.sort_by(|&a, &b| bounds[a].total_cmp(&bounds[b]).then(a.cmp(&b)));
+        for cell in order {
+            if bounds[cell] >= best.distance * best.distance {
+                break;
+            }
+            let (away, seed) = self.best_sample(cell, target);
+            if away <= best.distance + self.spread(cell) {
+                let found = self.descend(seed, target);
+                if found.distance < best.distance {
+                    best = found;
+                }
+            }
+        }
+        best
+    }
+
+    /// The foot point from a seed when it lies within `close`, else the closest point over the domain.
+    #[must_use]
+    pub fn closest_near(&self, target: &Point3<f64>, seed: (f64, f64), close: f64) -> SurfaceProjection {
+        let found = self.descend(seed, target);
+        if found.distance <= close {
+            return found;
+        }
+        let best = self.closest(target);
+        if best.distance < found.distance { best } else { found }
+    }
+
+    fn descend(&self, seed: (f64, f64), target: &Point3<f64>) -> SurfaceProjection {
+        self.surface.closest_from(target, seed, self.wrap)
+    }
+
+    /// Distance between neighbouring samples of a cell, roughly: how far the true foot may be from them.
+    fn spread(&self, cell: usize) -> f64 {
+        let cell = &self.cells[cell];
+        let least = (cell.rows.1 - cell.rows.0).min(cell.columns.1 - cell.columns.0);
+        cell.bounds.diagonal() / least as f64
+    }
+
+    fn best_sample(&self, cell: usize, target: &Point3<f64>) -> (f64, (f64, f64)) {
+        let cell = &self.cells[cell];
+        let mut best = (f64::INFINITY, (self.us[cell.rows.0], self.vs[cell.columns.0]));
+        for i in cell.rows.0..cell.rows.1 {
+            for j in cell.columns.0..cell.columns.1 {
+                let square = (self.points[i * self.vs.len() + j] - target).norm_squared();
+                if square < best.0 {
+                    best = (square, (self.us[i], self.vs[j]));
+                }
+            }
+        }
+        (best.0.sqrt(), best.1)
+    }
+}
+
+/// `count` parameters inside each of the spans.
+fn span_samples(knots: &KnotVector, spans: &[usize], count: usize) -> Vec<f64> {
+    let sample = |k: usize, i: usize| {
+        let (low, high) = (knots.knots()[k], knots.knots()[k + 1]);
+        low + (high - low) * ((i as f64 + 0.5) / count as f64)
+    };
+    spans.iter().flat_map(|&k| (0..count).map(move |i| sample(k, i))).collect()
+}

@@ -1,0 +1,137 @@
+//! Factorisation of sparse symmetric positive definite matrices.
+//!
+//! Assembly is sprs' (triplets, Kronecker products); the factor is faer's sequential sparse Cholesky with
+//! an approximate minimum degree ordering. Deterministic.
+
+use faer::Side;
+use faer::linalg::solvers::SolveCore;
+use faer::mat::MatMut;
+use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use sprs::CsMat;
+
+/// The matrix has no Cholesky factor in double precision.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum SingularSystem {
+    /// A pivot is zero, negative or not finite.
+    #[error("the {size} x {size} system is singular or not positive definite")]
+    NotPositiveDefinite {
+        /// Rows.
+        size: usize,
+    },
+    /// Rows and columns differ in number.
+    #[error("the system has {rows} rows and {columns} columns")]
+    NotSquare {
+        /// Rows.
+        rows: usize,
+        /// Columns.
+        columns: usize,
+    },
+    /// The factor does not fit into memory or into the index type.
+    #[error("the factor of the {size} x {size} system is too large")]
+    TooLarge {
+        /// Rows.
+        size: usize,
+    },
+}
+
+/// Cholesky factor of a sparse symmetric positive definite matrix, to be used for many right sides.
+#[derive(Debug, Clone)]
+pub struct SymmetricFactor {
+    size: usize,
+    factor: Option<Llt<usize, f64>>,
+}
+
+impl SymmetricFactor {
+    /// Factors a matrix of which both triangles are stored; the lower one is read.
+    ///
+    /// # Errors
+    /// See [`SingularSystem`]. The matrix of size 0 is fine.
+    pub fn new(matrix: &CsMat<f64>) -> Result<Self, SingularSystem> {
+        let (rows, columns) = matrix.shape();
+        if rows != columns {
+            return Err(SingularSystem::NotSquare { rows, columns });
+        }
+        if rows == 0 {
+            return Ok(Self { size: 0, factor: None });
+        }
+        // A symmetric matrix is its own transpose, so that compressed rows serve as compressed columns,
+        // of which the upper triangle is then the lower one of the rows.
+        let indptr = matrix.proper_indptr();
+        let pattern = SymbolicSparseColMatRef::new_checked(rows, rows, &indptr, None, matrix.indices());
+        let side = if matrix.is_csr() { Side::Upper } else { Side::Lower };
+        let symbolic =
+            SymbolicLlt::try_new(pattern, side).map_err(|_| SingularSystem::TooLarge { size: rows })?;
+        let values = SparseColMatRef::new(pattern, matrix.data());
+        let factor = Llt::try_new_with_symbolic(symbolic, values, side)
+            .map_err(|_| SingularSystem::NotPositiveDefinite { size: rows })?;
+        Ok(Self { size: rows, factor: Some(factor) })
+    }
+
+    /// Rows of the matrix.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Solves in place for any number of right sides, each a column of `size` numbers one after another.
+    ///
+    /// # Panics
+    /// When the length of `columns` is not a multiple of `size`.
+    pub fn solve(&self, columns: &mut [f64]) {
+        let Some(factor) = &self.factor else {
+            assert!(columns.is_empty(), "a system of size 0 has no right side");
+            return;
+        };
+        assert_eq!(columns.len() % self.size, 0, "right sides are whole columns");
+        let count = columns.len() / self.size;
+        let right = MatMut::from_column_major_slice_mut(columns, self.size, count);
+        factor.solve_in_place_with_conj(faer::Conj::No, right);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sprs::TriMat;
+
+    /// The second difference matrix, whose solution for a constant right side is a parabola.
+    fn second_difference(n: usize) -> CsMat<f64> {
+        let mut triplets = TriMat::new((n, n));
+        for i in 0..n {
+            triplets.add_triplet(i, i, 2.0);
+            if i + 1 < n {
+                triplets.add_triplet(i, i + 1, -1.0);
+                triplets.add_triplet(i + 1, i, -1.0);
+            }
+        }
+        triplets.to_csr()
+    }
+
+    #[test]
+    fn second_differences_of_a_constant_give_the_parabola() {
+        for n in [1, 2, 7, 300] {
+            let factor = SymmetricFactor::new(&second_difference(n)).unwrap();
+            let mut x = vec![1.0; 2 * n];
+            x[n..].fill(-2.0);
+            factor.solve(&mut x);
+            for i in 0..n {
+                let k = i as f64 + 1.0;
+                let exact = k * (n as f64 + 1.0 - k) / 2.0;
+                assert!((x[i] - exact).abs() <= 1e-11 * exact);
+                assert!((x[n + i] + 2.0 * exact).abs() <= 1e-11 * exact);
+            }
+        }
+    }
+
+    #[test]
+    fn an_indefinite_matrix_is_refused() {
+        let mut triplets = TriMat::new((2, 2));
+        triplets.add_triplet(0, 0, 1.0);
+        triplets.add_triplet(0, 1, 2.0);
+        triplets.add_triplet(1, 0, 2.0);
+        triplets.add_triplet(1, 1, 1.0);
+        let found = SymmetricFactor::new(&triplets.to_csr()).map(|f| f.size());
+        assert_eq!(found, Err(SingularSystem::NotPositiveDefinite { size: 2 }));
+    }
+}
