@@ -5,7 +5,7 @@
 //! shape; the border is scaled plainly; the control points in between are chosen so that the surface stays as fair
 //! as the plainly scaled one.
 //!
-//! The numeric core ([`scale_faces`]) takes surfaces and polygons in their parameters. `plan` decides for a model
+//! The numeric core ([`scale_faces`]) takes surfaces and polygons in their parameters. [`plan`] decides for a model
 //! which element gets which motion, and gives a change set. Neither knows file formats; nothing is repaired.
 //!
 //! What it does not do: loops that meet the border, held loops on surfaces other than B-splines, different factors
@@ -21,6 +21,7 @@ pub mod faces;
 pub mod fold;
 pub mod measures;
 pub mod motion;
+pub mod plan;
 pub mod polygon;
 pub mod refine;
 pub mod sampling;
