@@ -15,7 +15,7 @@ use crate::diagnostic::{Diagnostic, Severity};
 use crate::geometry::nurbs::NurbsSurface;
 use crate::model::Model;
 use crate::ops::OperationError;
-use crate::ops::constrained_scale::faces::Contour;
+use crate::ops::constrained_scale::task::Contour;
 
 /// A face with held loops, in its parameters.
 #[derive(Debug, Clone)]

@@ -9,8 +9,8 @@ use crate::geometry::Surface;
 use crate::geometry::nurbs::NurbsSurface;
 use crate::model::Model;
 use crate::ops::OperationError;
-use crate::ops::constrained_scale::faces::Contour;
 use crate::ops::constrained_scale::sampling::mean_lengths;
+use crate::ops::constrained_scale::task::Contour;
 
 /// A loop of the face in its parameters.
 #[derive(Debug, Clone)]

@@ -11,8 +11,9 @@ use super::scope::face_name;
 use crate::brep::FaceId;
 use crate::model::Model;
 use crate::ops::OperationError;
-use crate::ops::constrained_scale::faces::{FaceTask, Group, HeldLoop, Scaled, ScaledFace, scale_faces};
+use crate::ops::constrained_scale::faces::scale_faces;
 use crate::ops::constrained_scale::motion::Motion;
+use crate::ops::constrained_scale::task::{FaceTask, Group, HeldLoop, Scaled, ScaledFace};
 
 /// Stretched faces and the motions of all groups.
 #[derive(Debug, Clone, Default)]
