@@ -1,6 +1,7 @@
 //! The loops of a B-spline face as polygons in its parameters: which is the outer one, which are inner.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 use super::scope::face_name;
 use crate::brep::FaceId;
@@ -55,11 +56,10 @@ pub(super) struct Layouts {
 impl Layouts {
     /// The layout of a B-spline face.
     pub fn of(&mut self, model: &Model, face: FaceId) -> Result<&Layout, OperationError> {
-        if !self.known.contains_key(&face) {
-            let layout = lay_out(model, face)?;
-            self.known.insert(face, layout);
-        }
-        Ok(&self.known[&face])
+        Ok(match self.known.entry(face) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(free) => free.insert(lay_out(model, face)?),
+        })
     }
 }
 

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::hold::Held;
 use super::layout::spline_of;
 use super::scope::face_name;
-use super::stretch::Stretched;
+use super::stretch::{SolvedGroup, Stretched};
 use crate::model::Model;
 use crate::ops::OperationError;
 use crate::ops::constrained_scale::measures::{REPORT_SAMPLES, quality, rigid_deviation};
@@ -92,7 +92,7 @@ pub(super) fn measure(model: &Model, held: &Held, stretched: &Stretched) -> Resu
     });
     let faces = faces.collect();
     let mut groups = Vec::new();
-    for (loops, group, residual) in &stretched.groups {
+    for SolvedGroup { loops, group, residual } in &stretched.groups {
         let mut measured = Vec::new();
         for &(face, k) in loops {
             let (id, contour, _) = &held.bases[&face].held[k];

@@ -22,9 +22,19 @@ pub(super) struct Stretched {
     pub faces: BTreeMap<FaceId, ScaledFace>,
     /// Motion of each group of the hold.
     pub motions: Vec<Motion>,
-    /// Groups as they were solved, with loops as faces and indices among their held loops, and the residual of
-    /// their run.
-    pub groups: Vec<(Vec<(FaceId, usize)>, Group, f64)>,
+    /// Groups as they were solved.
+    pub groups: Vec<SolvedGroup>,
+}
+
+/// A group as it was solved.
+#[derive(Debug, Clone)]
+pub(super) struct SolvedGroup {
+    /// Faces, and indices among their held loops.
+    pub loops: Vec<(FaceId, usize)>,
+    /// Its motion.
+    pub group: Group,
+    /// Residual of the run that solved it.
+    pub residual: f64,
 }
 
 /// Scales all faces with held loops.
@@ -41,7 +51,7 @@ pub(super) fn stretch(model: &Model, held: &Held, params: &Params) -> Result<Str
             for (face, k) in &loops {
                 motions[held.bases[face].held[*k].2] = Some(group.motion.clone());
             }
-            out.groups.push((loops, group, residual));
+            out.groups.push(SolvedGroup { loops, group, residual });
         }
         out.faces.extend(faces.iter().copied().zip(scaled));
     }
