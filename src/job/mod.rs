@@ -1,1 +1,12 @@
-//! The job file: read, plan, run over parts, report. The only room that uses the file system.
+//! The job: read the file, plan with every check before any data is touched, run over the parts, report.
+//!
+//! The only room that uses the file system. Prints nothing.
+
+pub mod file;
+mod json;
+mod nearest;
+mod node;
+pub mod read;
+pub mod selector;
+
+pub use file::Job;
