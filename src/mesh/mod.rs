@@ -6,6 +6,7 @@
 mod integrity;
 pub mod off;
 pub mod stl;
+pub mod tessellate;
 mod triangle_mesh;
 
 pub use integrity::Integrity;

@@ -91,6 +91,19 @@ impl ExchangeStructure {
         self.header().find(|record| record.is(keyword))
     }
 
+    /// The names in `FILE_SCHEMA`, decoded, as written: `AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }`.
+    pub fn schemas(&self) -> impl Iterator<Item = std::borrow::Cow<'_, str>> {
+        let record = self.header_record(b"FILE_SCHEMA");
+        let list =
+            record.and_then(|record| record.parameters().next()).and_then(|parameter| parameter.as_list());
+        list.into_iter().flatten().filter_map(|name| name.as_str())
+    }
+
+    /// Reports every reference to a name that neither a record nor the reference section defines.
+    pub fn unresolved_references(&self, sink: &mut dyn Sink) {
+        super::reverse_index::unresolved_references(self, sink);
+    }
+
     /// The instances of all data sections in file order, duplicates included.
     pub fn instances(&self) -> impl ExactSizeIterator<Item = Instance<'_>> + DoubleEndedIterator {
         (0..self.len()).map(|position| Instance { structure: self, position })
@@ -208,7 +221,12 @@ impl<'a> Instance<'a> {
         let span = self.span();
         let end = content_end(bytes, span);
         let start = index::record_head(bytes, span.start as usize).map_or(end, |head| head.body);
-        (index::scope_end(bytes, start, end), end)
+        match bytes.get(start) {
+            Some(b'&') => {
+                (self.structure.index.scope_bodies.get(&span.start).map_or(end, |&body| body as usize), end)
+            }
+            _ => (start, end),
+        }
     }
 
     /// Whether it is written in external mapping, as `(A(…)B(…))`.
@@ -296,6 +314,7 @@ impl<'a> SimpleRecord<'a> {
 /// End of a statement without its semicolon.
 fn content_end(bytes: &[u8], span: Span) -> usize {
     let end = span.end as usize;
+    // Only a damaged record has no semicolon.
     end - usize::from(end > span.start as usize && bytes[end - 1] == b';')
 }
 

@@ -3,7 +3,9 @@
 //! The pass looks only at what may end a record: semicolons, quotes and comments. Parameters are not looked at.
 //! Damage is diagnosed and the pass goes on at the next record; it takes linear time and does not recurse.
 
-use memchr::{memchr, memchr3, memmem};
+use std::collections::{BTreeMap, BTreeSet};
+
+use memchr::{memchr, memchr_iter, memchr3, memmem};
 
 use super::code::Code;
 use super::name_table::{DenseBuilder, Insertion, NameTable};
@@ -26,6 +28,8 @@ pub(super) struct Index {
     pub(super) header: Vec<Span>,
     pub(super) records: Vec<RecordSpan>,
     pub(super) names: NameTable,
+    /// For each record with a scope, by its start: what stands behind the scope.
+    pub(super) scope_bodies: BTreeMap<u32, u32>,
     pub(super) anchors: Vec<Entry>,
     pub(super) references: Vec<Entry>,
 }
@@ -43,8 +47,10 @@ pub(super) fn build(bytes: &[u8], sink: &mut dyn Sink) -> Index {
         anchors: Vec::new(),
         references: Vec::new(),
         scopes: Vec::new(),
+        scope_bodies: BTreeMap::new(),
         lower_case_seen: false,
         truncated: false,
+        duplicates: BTreeSet::new(),
     };
     if indexer.opening() {
         indexer.sections();
@@ -82,27 +88,13 @@ pub(super) fn record_head(bytes: &[u8], at: usize) -> Option<Head> {
     Some(Head { name: fits.then_some(name), body: syntax::trivia_end(bytes, equals + 1) })
 }
 
-/// Behind `&SCOPE … ENDSCOPE /…/` at `at`; `at` itself when there is no scope.
-pub(super) fn scope_end(bytes: &[u8], at: usize, end: usize) -> usize {
-    if bytes.get(at) != Some(&b'&') {
-        return at;
-    }
-    let mut depth = 0_usize;
-    for (kind, span) in syntax::Tokens::starting_at(&bytes[..end], at) {
-        if kind != TokenKind::Keyword {
-            continue;
-        }
-        let word = &bytes[span.range()];
-        if word.eq_ignore_ascii_case(b"&SCOPE") {
-            depth += 1;
-        } else if word.eq_ignore_ascii_case(b"ENDSCOPE") {
-            depth = depth.saturating_sub(1);
-            if depth == 0 {
-                return export_list_end(&bytes[..end], span.end as usize);
-            }
-        }
-    }
-    end
+/// Whether `#12 =` stands at `at`. Comments are not looked for, so that searching with this takes linear time
+/// whatever the bytes.
+fn begins_record(bytes: &[u8], at: usize) -> bool {
+    let digits = syntax::digits_end(bytes, at + 1);
+    bytes.get(at) == Some(&b'#')
+        && digits > at + 1
+        && bytes.get(syntax::whitespace_end(bytes, digits)) == Some(&b'=')
 }
 
 /// Behind `/#1,#2/` and white space.
@@ -165,7 +157,7 @@ fn record_behind_semicolon(bytes: &[u8], mut at: usize) -> Option<usize> {
         let semicolon = at + memchr(b';', bytes.get(at..)?)?;
         let next = syntax::whitespace_end(bytes, semicolon + 1);
         let broken = bytes[semicolon + 1..next].iter().any(|byte| matches!(byte, b'\r' | b'\n'));
-        if broken && (record_head(bytes, next).is_some() || bytes[next..].starts_with(b"ENDSEC")) {
+        if broken && (begins_record(bytes, next) || bytes[next..].starts_with(b"ENDSEC")) {
             return Some(semicolon);
         }
         at = semicolon + 1;
@@ -184,8 +176,11 @@ struct Indexer<'a, 's> {
     references: Vec<Entry>,
     /// Records whose scope is open.
     scopes: Vec<usize>,
+    scope_bodies: BTreeMap<u32, u32>,
     lower_case_seen: bool,
     truncated: bool,
+    /// Where the records begin whose name came before, once reported.
+    duplicates: BTreeSet<u32>,
 }
 
 impl Indexer<'_, '_> {
@@ -268,7 +263,7 @@ impl Indexer<'_, '_> {
     /// Text between sections: records are read as a data section without opening, the rest is skipped.
     fn stray_text(&mut self) {
         let start = self.at;
-        if self.is_record(start) {
+        if begins_record(self.bytes, start) {
             self.note(Code::UnexpectedText, start, start + 1, "records outside a data section");
             self.body(SectionKind::Data, start, None);
             return;
@@ -276,10 +271,6 @@ impl Indexer<'_, '_> {
         let end = memchr(b';', &self.bytes[start..]).map_or(self.bytes.len(), |found| start + found + 1);
         self.note(Code::UnexpectedText, start, end, "expected a section, found other text");
         self.at = end;
-    }
-
-    fn is_record(&self, at: usize) -> bool {
-        self.bytes.get(at) == Some(&b'#') && record_head(self.bytes, at).is_some()
     }
 
     /// A section from its keyword on.
@@ -311,6 +302,9 @@ impl Indexer<'_, '_> {
                 self.at = memmem::find(rest, b"ENDSEC").map_or(self.bytes.len(), |found| self.at + found);
             }
         }
+        if kind == SectionKind::Data {
+            self.release_endsec();
+        }
         let body_end = self.at;
         if self.word_at(self.at).eq_ignore_ascii_case(b"ENDSEC") {
             self.at += b"ENDSEC".len();
@@ -322,6 +316,27 @@ impl Indexer<'_, '_> {
         }
         let span = syntax::span(start, self.at);
         self.sections.push(Section { kind, span, body: syntax::span(body_start, body_end), parameters });
+    }
+
+    /// When the last record lost its semicolon, it ends in `ENDSEC;`: goes back to before that word.
+    fn release_endsec(&mut self) {
+        const WORD: &[u8] = b"ENDSEC";
+        if self.word_at(self.at).eq_ignore_ascii_case(WORD) {
+            return;
+        }
+        let Some(last) = self.records.last_mut() else { return };
+        let (start, end) = (last.start as usize, last.end as usize);
+        let Some(text) = self.bytes[start..end].strip_suffix(b";") else { return };
+        let text = text.trim_ascii_end();
+        let Some((record, word)) = text.split_last_chunk::<6>() else { return };
+        if word.eq_ignore_ascii_case(WORD)
+            && !record.last().is_some_and(|&byte| syntax::is_keyword_byte(byte))
+        {
+            let record_end = start + record.trim_ascii_end().len();
+            last.end = syntax::span(start, record_end).end;
+            self.at = start + record.len();
+            self.note(Code::MissingSemicolon, start, record_end, "expected a semicolon behind this record");
+        }
     }
 
     fn truncate(&mut self, message: &str) {
@@ -457,7 +472,7 @@ impl Indexer<'_, '_> {
             let border = self.bytes[from] != b'#'
                 && !syntax::is_keyword_byte(self.bytes[from - 1])
                 && self.at_section_border(from);
-            if border || self.is_record(from) {
+            if border || begins_record(self.bytes, from) {
                 return from;
             }
             from += 1;
@@ -509,12 +524,11 @@ impl Indexer<'_, '_> {
     }
 
     fn duplicate(&mut self, name: u64, start: usize, end: usize) {
-        let message = format!("#{name} is defined again; the first definition is used");
-        self.sink.report(Code::DuplicateInstance.note_on(
-            format_args!("#{name}"),
-            syntax::span(start, end),
-            message,
-        ));
+        let span = syntax::span(start, end);
+        if self.duplicates.insert(span.start) {
+            let message = format!("#{name} is defined again; the first definition is used");
+            self.sink.report(Code::DuplicateInstance.note_on(format_args!("#{name}"), span, message));
+        }
     }
 
     fn open_scope(&mut self, start: usize, head: &Head) {
@@ -538,7 +552,9 @@ impl Indexer<'_, '_> {
             End::At(end) | End::OpenString(end) => {
                 self.at = end;
                 if let Some(position) = self.scopes.pop() {
-                    self.records[position].end = syntax::span(start, end).end;
+                    let record = &mut self.records[position];
+                    record.end = syntax::span(start, end).end;
+                    self.scope_bodies.insert(record.start, syntax::span(body, end).start);
                 }
             }
             End::Missing => self.truncate("the file ends inside a record"),
@@ -546,30 +562,95 @@ impl Indexer<'_, '_> {
     }
 
     fn finish(mut self) -> Index {
-        let dense = std::mem::take(&mut self.dense);
-        let names = dense.finish().unwrap_or_else(|| self.sorted_names());
+        let dense = std::mem::take(&mut self.dense).finish();
+        let names = match dense {
+            Some(names) if !self.split_records() => names,
+            _ => self.names(),
+        };
         self.records.shrink_to_fit();
         Index {
             sections: self.sections,
             header: self.header,
             records: self.records,
             names,
+            scope_bodies: self.scope_bodies,
             anchors: self.anchors,
             references: self.references,
         }
     }
 
-    fn sorted_names(&mut self) -> NameTable {
-        let name =
-            |record: &RecordSpan| record_head(self.bytes, record.start as usize).and_then(|head| head.name);
-        let pairs =
+    /// Parts records that lost their semicolon from those they swallowed; returns whether there was any.
+    fn split_records(&mut self) -> bool {
+        // Every whole record has one equals sign outside strings and comments. Counting all of them is far
+        // cheaper than looking for them in each record, and most files have no others.
+        let bodies = self.sections.iter().filter(|section| section.kind == SectionKind::Data);
+        let equals: usize =
+            bodies.map(|section| memchr_iter(b'=', &self.bytes[section.body.range()]).count()).sum();
+        if equals <= self.records.len() {
+            return false;
+        }
+        let records = std::mem::take(&mut self.records);
+        let before = records.len();
+        for record in records {
+            self.split(record);
+        }
+        self.records.len() > before
+    }
+
+    /// Puts a record back, or the several that it holds.
+    fn split(&mut self, record: RecordSpan) {
+        let (start, end) = (record.start as usize, record.end as usize);
+        let bytes = &self.bytes[..end];
+        let Some(head) = record_head(bytes, start) else { return };
+        let in_scope = bytes.get(head.body) == Some(&b'&');
+        if in_scope || memchr(b'=', &bytes[head.body.min(end)..]).is_none() {
+            return self.records.push(record);
+        }
+        let (mut part_start, mut part_end) = (start, head.body);
+        for (kind, span) in syntax::Tokens::starting_at(bytes, head.body) {
+            if matches!(kind, TokenKind::Whitespace | TokenKind::Comment) {
+                continue;
+            }
+            let begin = span.start as usize;
+            if kind == TokenKind::InstanceName
+                && record_head(bytes, begin).is_some_and(|head| head.name.is_some())
+            {
+                self.note(
+                    Code::MissingSemicolon,
+                    part_start,
+                    part_end,
+                    "expected a semicolon behind this record",
+                );
+                let Span { start, end } = syntax::span(part_start, part_end);
+                self.records.push(RecordSpan { start, end });
+                part_start = begin;
+            }
+            part_end = span.end as usize;
+        }
+        let Span { start, end } = syntax::span(part_start, end);
+        self.records.push(RecordSpan { start, end });
+    }
+
+    /// The table of names from the records as they are.
+    fn names(&mut self) -> NameTable {
+        let bytes = self.bytes;
+        let name = |record: &RecordSpan| record_head(bytes, record.start as usize).and_then(|head| head.name);
+        let named =
             (0_u32..).zip(&self.records).filter_map(|(position, record)| Some((name(record)?, position)));
         let mut duplicates = Vec::new();
-        let table = NameTable::sorted(pairs.collect(), |position| duplicates.push(position));
-        duplicates.sort_unstable();
-        for position in duplicates {
+        let mut dense = DenseBuilder::default();
+        for (name, position) in named.clone() {
+            if dense.insert(name, position) == Insertion::Duplicate {
+                duplicates.push((name, position));
+            }
+        }
+        let table = dense.finish().unwrap_or_else(|| {
+            duplicates.clear();
+            NameTable::sorted(named.collect(), |name, position| duplicates.push((name, position)))
+        });
+        duplicates.sort_unstable_by_key(|&(_, position)| position);
+        for (name, position) in duplicates {
             let RecordSpan { start, end } = self.records[position as usize];
-            let name = record_head(self.bytes, start as usize).and_then(|head| head.name).unwrap_or_default();
             self.duplicate(name, start as usize, end as usize);
         }
         table

@@ -40,14 +40,14 @@ impl NameTable {
         }
     }
 
-    /// Sorted table of `(name, position)` pairs; calls `duplicate(position)` for every name that came before.
-    pub(super) fn sorted(mut pairs: Vec<(u64, u32)>, mut duplicate: impl FnMut(u32)) -> Self {
+    /// Sorted table of `(name, position)` pairs; calls `duplicate(name, position)` for every name that came before.
+    pub(super) fn sorted(mut pairs: Vec<(u64, u32)>, mut duplicate: impl FnMut(u64, u32)) -> Self {
         pairs.sort_unstable();
         let mut names = Vec::with_capacity(pairs.len());
         let mut positions = Vec::with_capacity(pairs.len());
         for (name, position) in pairs {
             if names.last() == Some(&name) {
-                duplicate(position);
+                duplicate(name, position);
             } else {
                 names.push(name);
                 positions.push(position);

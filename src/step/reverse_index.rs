@@ -8,7 +8,9 @@ use std::collections::BTreeSet;
 use memchr::memchr3;
 
 use super::exchange_structure::{ExchangeStructure, Instance, InstanceName};
-use super::syntax;
+use super::{Code, syntax};
+use crate::diagnostic::Sink;
+use crate::source::Span;
 
 /// Users of each instance, by position in the file.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -70,7 +72,7 @@ impl ReverseIndex {
         let mut pending: Vec<u32> = removed.iter().copied().collect();
         while let Some(position) = pending.pop() {
             let Some(instance) = structure.instance_at(position) else { continue };
-            for target in references(instance).filter_map(|name| structure.position(name)) {
+            for target in references(instance).filter_map(|(name, _)| structure.position(name)) {
                 let unused = self.users_at(target).iter().all(|user| *user == target || gone.contains(user));
                 if unused && !anchored.contains(&target) && gone.insert(target) {
                     pending.push(target);
@@ -83,7 +85,7 @@ impl ReverseIndex {
 
 fn anchored(structure: &ExchangeStructure) -> BTreeSet<u32> {
     let names = structure.anchors().flat_map(|(_, item)| References { bytes: item, at: 0 });
-    names.filter_map(|name| structure.position(name)).collect()
+    names.filter_map(|(name, _)| structure.position(name)).collect()
 }
 
 /// Calls `found(target, user)` once for every pair, in the order of the users.
@@ -92,7 +94,7 @@ fn for_each_use(structure: &ExchangeStructure, mut found: impl FnMut(u32, u32)) 
     let mut last_user = vec![NEVER; structure.len() as usize];
     for instance in structure.instances() {
         let user = instance.position();
-        for target in references(instance).filter_map(|name| structure.position(name)) {
+        for target in references(instance).filter_map(|(name, _)| structure.position(name)) {
             if last_user[target as usize] != user {
                 last_user[target as usize] = user;
                 found(target, user);
@@ -101,8 +103,22 @@ fn for_each_use(structure: &ExchangeStructure, mut found: impl FnMut(u32, u32)) 
     }
 }
 
-/// Every reference of an instance in the order of its text, repetitions included.
-pub fn references(instance: Instance<'_>) -> impl Iterator<Item = InstanceName> {
+/// Reports every reference to a name that neither a record nor the reference section defines.
+pub fn unresolved_references(structure: &ExchangeStructure, sink: &mut dyn Sink) {
+    let external: BTreeSet<InstanceName> =
+        structure.references().filter_map(|(name, _)| InstanceName::parse(name)).collect();
+    for instance in structure.instances() {
+        for (target, span) in references(instance) {
+            if structure.position(target).is_none() && !external.contains(&target) {
+                let message = format!("refers to {target}, which the file does not define");
+                sink.report(Code::UnresolvedReference.note_on(instance.name(), span, message));
+            }
+        }
+    }
+}
+
+/// Every reference of an instance with its place, in the order of its text, repetitions included.
+pub fn references(instance: Instance<'_>) -> impl Iterator<Item = (InstanceName, Span)> {
     let (start, end) = instance.body();
     References { bytes: &instance.bytes()[..end], at: start }
 }
@@ -114,9 +130,9 @@ struct References<'a> {
 }
 
 impl Iterator for References<'_> {
-    type Item = InstanceName;
+    type Item = (InstanceName, Span);
 
-    fn next(&mut self) -> Option<InstanceName> {
+    fn next(&mut self) -> Option<Self::Item> {
         loop {
             self.at += memchr3(b'#', b'\'', b'/', self.bytes.get(self.at..)?)?;
             let start = self.at;
@@ -124,7 +140,7 @@ impl Iterator for References<'_> {
                 b'#' => {
                     self.at = syntax::digits_end(self.bytes, start + 1);
                     if let Some(name) = InstanceName::parse(&self.bytes[start..self.at]) {
-                        return Some(name);
+                        return Some((name, syntax::span(start, self.at)));
                     }
                 }
                 b'\'' => self.at = syntax::string_end(self.bytes, start)?,

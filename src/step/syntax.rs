@@ -5,7 +5,7 @@
 //! [`TokenKind::Junk`]. Structure (records, nesting) is not looked at: see
 //! [`exchange_structure`](super::exchange_structure) and [`parameter`](super::parameter).
 
-use memchr::{memchr, memchr2, memmem};
+use memchr::{memchr, memchr3, memmem};
 
 use crate::source::Span;
 
@@ -195,9 +195,9 @@ fn binary_end(bytes: &[u8], at: usize) -> Option<usize> {
     (bytes[end] == b'"').then_some(end + 1)
 }
 
-/// `<…>` on one line.
+/// `<…>` on one line. Stopping at another `<` keeps the search linear over any bytes.
 fn resource_end(bytes: &[u8], at: usize) -> Option<usize> {
-    let end = at + memchr2(b'>', b'\n', &bytes[at..])?;
+    let end = at + 1 + memchr3(b'>', b'\n', b'<', &bytes[at + 1..])?;
     (bytes[end] == b'>').then_some(end + 1)
 }
 

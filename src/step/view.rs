@@ -222,11 +222,7 @@ pub fn list<'a>(
     field.as_ref().and_then(Parameter::as_list).ok_or_else(|| wrong(field, attribute, "a list"))
 }
 
-fn wrong(
-    field: Option<Parameter<'_>>,
-    attribute: &'static str,
-    expected: &'static str,
-) -> AttributeError {
+fn wrong(field: Option<Parameter<'_>>, attribute: &'static str, expected: &'static str) -> AttributeError {
     let found = match field {
         None => "missing",
         Some(Parameter::Omitted) => "`$`",

@@ -43,7 +43,7 @@ fn span_under(knots: &KnotVector, before: f64, under: &[f64]) -> usize {
     let (low, high) = (under[0], under[under.len() - 1]);
     if low < high {
         let first = all.partition_point(|&k| k < low);
-        let last = all.partition_point(|&k| k <= high).min(all.len() - 1);
+        let last = all.partition_point(|&k| k <= high) - 1;
         let middle = 0.5 * (low + high);
         let width = |k: usize| all[k + 1] - all[k];
         let off = |k: usize| (0.5 * (all[k] + all[k + 1]) - middle).abs();

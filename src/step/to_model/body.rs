@@ -5,12 +5,13 @@
 use std::collections::{HashMap, HashSet};
 
 use super::code::ModelCode;
+use super::curve::Trims;
 use super::product::Products;
 use super::roots::Roots;
 use super::scope::Scope;
 use super::topology::Builder;
 use super::units::Contexts;
-use super::{curve, scope};
+use super::{curve, placement, scope};
 use crate::brep::{Arena, Body, BodyId, BodyKind, CurveId};
 use crate::diagnostic::Sink;
 use crate::model::{Attributes, BodyAttributes, Origin};
@@ -23,11 +24,18 @@ pub(super) struct Holders {
     representation: HashMap<InstanceName, InstanceName>,
     /// Curves, and sets of them, with their representation; in file order.
     curves: Vec<(InstanceName, InstanceName)>,
+    /// Faces, edges and the like, which should be part of a body too.
+    elements: Vec<InstanceName>,
 }
 
 impl Holders {
-    pub(super) fn find(scope: Scope<'_>, roots: &Roots, products: &mut Products, sink: &mut dyn Sink) -> Self {
-        let mut holders = Self { representation: HashMap::new(), curves: Vec::new() };
+    pub(super) fn find(
+        scope: Scope<'_>,
+        roots: &Roots,
+        products: &mut Products,
+        sink: &mut dyn Sink,
+    ) -> Self {
+        let mut holders = Self { representation: HashMap::new(), curves: Vec::new(), elements: Vec::new() };
         let known: HashSet<InstanceName> = roots.bodies.iter().chain(&roots.shells).copied().collect();
         for &name in &roots.representations {
             let Ok(view) = scope.view(name) else { continue };
@@ -71,6 +79,12 @@ impl Holders {
             }
         } else if view.is(Entity::GeometricSet) || view.is(Entity::Curve) {
             self.curves.push((item, representation));
+        } else if view.is(Entity::Axis2Placement3d) {
+            if let Err(error) = placement::frame(scope, item) {
+                report(error.geometry_code(), format!("{}: {error}", view.entity()));
+            }
+        } else if view.is(Entity::TopologicalRepresentationItem) {
+            self.elements.push(item);
         } else if !view.is(Entity::Placement) && !view.is(Entity::Point) {
             report(ModelCode::NotReadYet, unread());
         }
@@ -117,6 +131,7 @@ impl<'p> Bodies<'p> {
             }
         }
         self.curves(builder);
+        self.loose_elements(builder);
         if self.contexts.all.is_empty() {
             for &name in &roots.contexts {
                 self.contexts.of(builder.scope, name, builder.sink);
@@ -128,8 +143,7 @@ impl<'p> Bodies<'p> {
         let kind = if view.is(Entity::SolidModel) { BodyKind::Solid } else { BodyKind::Surface };
         let id = self.open(builder, view.name(), kind);
         self.attributes[id].own.name = view.text("name").into_owned();
-        let [outer, voids, shells, faces] =
-            view.fields(["outer", "voids", "sbsm_boundary", "fbsm_faces"]);
+        let [outer, voids, shells, faces] = view.fields(["outer", "voids", "sbsm_boundary", "fbsm_faces"]);
         let mut members: Vec<InstanceName> = outer.iter().filter_map(|p| p.as_reference()).collect();
         for (field, attribute) in [(voids, "voids"), (shells, "sbsm_boundary"), (faces, "fbsm_faces")] {
             if field.is_some() {
@@ -152,6 +166,25 @@ impl<'p> Bodies<'p> {
         }
         let shell = builder.shell(name, id);
         builder.brep.bodies[id].shells.extend(shell);
+    }
+
+    /// Says which faces, edges and the like stand in a representation and in no body.
+    fn loose_elements(&self, builder: &mut Builder<'_, '_>) {
+        let origins = &builder.origins;
+        let faces = origins.faces.iter().map(|(_, origin)| *origin);
+        let edges = origins.edges.iter().map(|(_, origin)| *origin);
+        let vertices = origins.vertices.iter().map(|(_, origin)| *origin);
+        let elements = &self.holders.elements;
+        if elements.is_empty() {
+            return;
+        }
+        let built: HashSet<Origin> = faces.chain(edges).chain(vertices).collect();
+        for &name in elements.iter().filter(|name| !built.contains(&Origin::Instance(name.0))) {
+            if let Ok(instance) = builder.scope.instance(name) {
+                let message = format!("{} outside of any body: not read yet", scope::entity_name(instance));
+                builder.report(ModelCode::NotReadYet, name, message);
+            }
+        }
     }
 
     /// Adds a body without shells, in the context of its representation.
@@ -214,8 +247,8 @@ impl<'p> Bodies<'p> {
             let message = format!("{}: not read yet", scope::entity_name(instance));
             return builder.report(ModelCode::NotReadYet, name, message);
         }
-        match curve::resolve(builder.scope, name) {
-            Ok((name, _)) if seen.insert(name) => self.free_curves.push(builder.curve(name)),
+        match curve::resolve(builder.scope, name, Trims::Keep) {
+            Ok((name, _)) if seen.insert(name) => self.free_curves.push(builder.curve(name, name)),
             Ok(_) => {}
             Err(error) => builder.report(error.geometry_code(), name, error.to_string()),
         }

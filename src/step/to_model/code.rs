@@ -28,6 +28,12 @@ pub enum ModelCode {
     LooseBody,
     /// A shell that several bodies hold; the first has it.
     SharedShell,
+    /// A coordinate without a point, against ISO 10303-21; said once for a file.
+    IntegerForReal,
+    /// A coordinate with a lower-case exponent, against ISO 10303-21; said once for a file.
+    LowerCaseExponent,
+    /// A name with raw bytes that are not UTF-8; they are shown as ISO 8859-1.
+    RawString,
     /// A product, an assembly use, a style or a layer that cannot be followed.
     BadReference,
 }
@@ -47,6 +53,9 @@ impl ModelCode {
             Self::UnknownUnit => "step.unknown-unit",
             Self::LooseBody => "step.loose-body",
             Self::SharedShell => "step.shared-shell",
+            Self::IntegerForReal => "step.integer-for-real",
+            Self::LowerCaseExponent => "step.lower-case-exponent",
+            Self::RawString => "step.raw-string",
             Self::BadReference => "step.bad-reference",
         }
     }
@@ -62,6 +71,9 @@ impl ModelCode {
             | Self::UnknownUnit
             | Self::LooseBody
             | Self::SharedShell
+            | Self::IntegerForReal
+            | Self::LowerCaseExponent
+            | Self::RawString
             | Self::BadReference => Severity::Warning,
         }
     }

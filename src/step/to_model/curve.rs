@@ -10,25 +10,43 @@ use crate::step::InstanceName;
 use crate::step::entity::Entity;
 use crate::step::view::{EntityView, count, list, real, reference};
 
-/// Surface curves around surface curves that are followed before the chain counts as a cycle.
-const MAX_NESTED_SURFACE_CURVES: usize = 16;
+/// Curves around curves that are followed before the chain counts as a cycle.
+const MAX_NESTED_CURVES: usize = 16;
 
-/// The curve that a reference stands for: the curve in space of a surface curve, else itself.
+/// What becomes of a trimmed curve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Trims {
+    /// Its basis curve stands for it: vertices or face bounds say where it ends.
+    Follow,
+    /// It stays what it is.
+    Keep,
+}
+
+/// The curve that a reference stands for: the curve in space of a surface curve, the basis of a trimmed
+/// curve of the same sense, else itself.
 ///
-/// Also gives the outermost surface curve, whose parameter-space curves count.
+/// Also gives the outermost surface curve, whose parameter-space curves count. A trimmed curve of opposite
+/// sense is kept: the edge's own sense would have to change with it.
 pub(super) fn resolve(
     scope: Scope<'_>,
     name: InstanceName,
+    trims: Trims,
 ) -> Result<(InstanceName, Option<EntityView<'_>>), ReadError> {
     let mut current = name;
     let mut outermost = None;
-    for _ in 0..MAX_NESTED_SURFACE_CURVES {
-        let view = match scope.view(current) {
-            Ok(view) if view.is(Entity::SurfaceCurve) => view,
-            _ => return Ok((current, outermost)),
-        };
-        outermost.get_or_insert(view);
-        current = view.reference("curve_3d")?;
+    for _ in 0..MAX_NESTED_CURVES {
+        let Ok(view) = scope.view(current) else { return Ok((current, outermost)) };
+        if view.is(Entity::SurfaceCurve) {
+            outermost.get_or_insert(view);
+            current = view.reference("curve_3d")?;
+        } else if trims == Trims::Follow
+            && view.is(Entity::TrimmedCurve)
+            && view.boolean("sense_agreement")?
+        {
+            current = view.reference("basis_curve")?;
+        } else {
+            return Ok((current, outermost));
+        }
     }
     Err(ReadError::Cycle(name))
 }
@@ -42,9 +60,11 @@ pub(super) fn read(scope: Scope<'_>, name: InstanceName) -> Result<Curve, ReadEr
         Entity::Ellipse => ellipse(scope, &view),
         _ if view.is(Entity::BSplineCurve) => spline(scope, &view).map(Curve::Nurbs),
         _ if view.is(Entity::Curve) => Err(ReadError::NotReadYet),
-        found => {
-            Err(ReadError::WrongEntity { name, found: found.name().to_owned(), expected: Entity::Curve.name() })
-        }
+        found => Err(ReadError::WrongEntity {
+            name,
+            found: found.name().to_owned(),
+            expected: Entity::Curve.name(),
+        }),
     }
 }
 
@@ -78,7 +98,7 @@ fn spline(scope: Scope<'_>, view: &EntityView<'_>) -> Result<NurbsCurve3, ReadEr
         points.push([point.x, point.y, point.z, 1.0]);
     }
     let knots = knots_and_weights(view, &mut points)?;
-    Ok(NurbsCurve3::new(knots, points)?)
+    Ok(NurbsCurve3::new(knots, points)?.clamped())
 }
 
 /// Knots of a B-spline curve in space or in the plane; multiplies the points by their weights.

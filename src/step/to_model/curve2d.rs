@@ -32,11 +32,7 @@ pub fn parameter_scale(surface: &Surface, radians: f64) -> [f64; 2] {
 }
 
 /// The curve of a `PCURVE`, in model parameters.
-pub(super) fn read(
-    scope: Scope<'_>,
-    name: InstanceName,
-    scale: [f64; 2],
-) -> Result<Curve2d, ReadError> {
+pub(super) fn read(scope: Scope<'_>, name: InstanceName, scale: [f64; 2]) -> Result<Curve2d, ReadError> {
     let pcurve = scope.view_of(name, Entity::Pcurve)?;
     let holder = scope.view_of(pcurve.reference("reference_to_curve")?, Entity::Representation)?;
     let item = holder.references("items")?.next().ok_or(ReadError::Empty { attribute: "items" })?;
@@ -85,16 +81,12 @@ fn conic(scope: Scope<'_>, view: &EntityView<'_>, [su, sv]: [f64; 2]) -> Result<
     })
 }
 
-fn spline(
-    scope: Scope<'_>,
-    view: &EntityView<'_>,
-    [su, sv]: [f64; 2],
-) -> Result<NurbsCurve2, ReadError> {
+fn spline(scope: Scope<'_>, view: &EntityView<'_>, [su, sv]: [f64; 2]) -> Result<NurbsCurve2, ReadError> {
     let mut points = Vec::new();
     for member in view.list("control_points_list")? {
         let point = point2(scope, reference(Some(member), "control_points_list")?)?;
         points.push([point.x * su, point.y * sv, 1.0]);
     }
     let knots = knots_and_weights(view, &mut points)?;
-    Ok(NurbsCurve::new(knots, points)?)
+    Ok(NurbsCurve::new(knots, points)?.clamped())
 }

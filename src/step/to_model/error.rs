@@ -11,6 +11,9 @@ pub(super) enum ReadError {
     /// An entity that the program carries only.
     #[error("not read yet")]
     NotReadYet,
+    /// A curve that a surface is made of.
+    #[error("{attribute} {name} {entity}: {source}")]
+    Basis { attribute: &'static str, name: InstanceName, entity: String, source: Box<Self> },
     /// A reference without a record.
     #[error("{0} is not in the file")]
     Dangling(InstanceName),
@@ -62,6 +65,7 @@ impl ReadError {
     pub(super) fn geometry_code(&self) -> ModelCode {
         match self {
             Self::NotReadYet => ModelCode::NotReadYet,
+            Self::Basis { source, .. } => source.geometry_code(),
             Self::Dangling(_) => ModelCode::Dangling,
             Self::Cycle(_) => ModelCode::Cycle,
             _ => ModelCode::BadGeometry,

@@ -32,7 +32,7 @@ use crate::model::Model;
 use body::{Bodies, Holders};
 use product::Products;
 use roots::Roots;
-use scope::Scope;
+use scope::{Habits, Scope};
 use topology::Builder;
 
 /// Reads the bodies, free curves, units, products, names, colours and layers of a file.
@@ -40,7 +40,8 @@ use topology::Builder;
 /// Never fails: a damaged element is carried as unread or left out, and a diagnostic says so.
 pub fn to_model(file: &ExchangeStructure, sink: &mut dyn Sink) -> Model {
     let roots = Roots::find(file);
-    let scope = Scope { file, radians: 1.0 };
+    let habits = Habits::default();
+    let scope = Scope { file, radians: 1.0, habits: &habits };
     let mut products = Products::read(scope, &roots, sink);
     let holders = Holders::find(scope, &roots, &mut products, sink);
     let occurrences = products.occurrences(scope, &roots, sink);
@@ -48,7 +49,8 @@ pub fn to_model(file: &ExchangeStructure, sink: &mut dyn Sink) -> Model {
     let mut bodies = Bodies::new(&products, holders);
     bodies.build(&mut builder, &roots);
     presentation::apply(&mut builder, &roots, &mut bodies.attributes);
-    let Builder { brep, origins, faces, .. } = builder;
+    let Builder { brep, origins, faces, sink, .. } = builder;
+    habits.report(file, sink);
     Model {
         schema: schema(file),
         brep,

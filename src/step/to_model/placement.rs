@@ -3,8 +3,8 @@
 use super::error::ReadError;
 use super::scope::Scope;
 use crate::math::{Frame, Point2, Point3, Vector2, Vector3};
-use crate::step::InstanceName;
 use crate::step::entity::Entity;
+use crate::step::{InstanceName, Parameter, Parameters};
 
 /// A `CARTESIAN_POINT` in space; a missing third coordinate is an error.
 pub(super) fn point3(scope: Scope<'_>, name: InstanceName) -> Result<Point3<f64>, ReadError> {
@@ -61,10 +61,7 @@ pub(super) fn frame(scope: Scope<'_>, name: InstanceName) -> Result<Frame, ReadE
 }
 
 /// An `AXIS2_PLACEMENT_2D`: its location and its first axis.
-pub(super) fn frame2(
-    scope: Scope<'_>,
-    name: InstanceName,
-) -> Result<(Point2<f64>, Vector2<f64>), ReadError> {
+pub(super) fn frame2(scope: Scope<'_>, name: InstanceName) -> Result<(Point2<f64>, Vector2<f64>), ReadError> {
     let view = scope.view_of(name, Entity::Axis2Placement2d)?;
     let location = point2(scope, view.reference("location")?)?;
     let first = view.optional_reference("ref_direction");
@@ -84,18 +81,32 @@ fn coordinates<const N: usize>(
         // A short name, a complex instance, or something else altogether.
         let view = scope.view_of(name, entity)?;
         let attribute = if entity == Entity::Direction { "direction_ratios" } else { "coordinates" };
-        return numbers(view.list(attribute)?).ok_or(ReadError::Coordinates(name));
+        return numbers(scope, name, view.list(attribute)?).ok_or(ReadError::Coordinates(name));
     }
     let record = instance.records().next().ok_or(ReadError::Coordinates(name))?;
     let list = record.parameters().nth(1).and_then(|parameter| parameter.as_list());
-    list.and_then(numbers).ok_or(ReadError::Coordinates(name))
+    list.and_then(|list| numbers(scope, name, list)).ok_or(ReadError::Coordinates(name))
 }
 
-fn numbers<const N: usize>(list: crate::step::Parameters<'_>) -> Option<[f64; N]> {
+fn numbers<const N: usize>(
+    scope: Scope<'_>,
+    name: InstanceName,
+    mut list: Parameters<'_>,
+) -> Option<[f64; N]> {
     let mut numbers = [0.0; N];
-    let mut list = list;
     for number in &mut numbers {
-        *number = list.next()?.as_f64().filter(|number| number.is_finite())?;
+        let parameter = list.next()?;
+        match &parameter {
+            Parameter::Real(token) if !token.text().contains(&b'e') => {}
+            Parameter::Real(_) if scope.habits.exponent.get().is_none() => {
+                scope.habits.exponent.set(Some(name))
+            }
+            Parameter::Integer(_) if scope.habits.integer.get().is_none() => {
+                scope.habits.integer.set(Some(name))
+            }
+            _ => {}
+        }
+        *number = parameter.as_f64().filter(|number| number.is_finite())?;
     }
     Some(numbers)
 }

@@ -64,7 +64,11 @@ impl Targets {
 }
 
 /// Puts colours and layers on the faces and bodies that were built.
-pub(super) fn apply(builder: &mut Builder<'_, '_>, roots: &Roots, bodies: &mut Arena<BodyId, BodyAttributes>) {
+pub(super) fn apply(
+    builder: &mut Builder<'_, '_>,
+    roots: &Roots,
+    bodies: &mut Arena<BodyId, BodyAttributes>,
+) {
     if roots.styled_items.is_empty() && roots.layers.is_empty() {
         return;
     }

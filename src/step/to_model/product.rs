@@ -10,8 +10,8 @@ use super::roots::Roots;
 use super::scope::Scope;
 use crate::diagnostic::Sink;
 use crate::model::{Occurrence, Origin, Product};
-use crate::step::InstanceName;
 use crate::step::entity::Entity;
+use crate::step::{InstanceName, Parameter, string};
 
 /// Representations that are looked at to find the product of one: real files need two or three.
 const MAX_RELATED_REPRESENTATIONS: usize = 64;
@@ -36,7 +36,7 @@ impl Products {
             related: BTreeMap::new(),
         };
         for &name in &roots.products {
-            let product = product(scope, name).unwrap_or_else(|error| {
+            let product = product(scope, name, sink).unwrap_or_else(|error| {
                 let message = format!("PRODUCT_DEFINITION: {error}");
                 sink.report(ModelCode::BadReference.at(scope.file, name, message));
                 Product { id: String::new(), name: String::new(), origin: Origin::Instance(name.0) }
@@ -122,10 +122,18 @@ fn pair(
     Ok((view.reference(first)?, view.reference(second)?))
 }
 
-fn product(scope: Scope<'_>, definition: InstanceName) -> Result<Product, ReadError> {
+fn product(scope: Scope<'_>, definition: InstanceName, sink: &mut dyn Sink) -> Result<Product, ReadError> {
     let view = scope.view(definition)?;
     let formation = scope.view_of(view.reference("formation")?, Entity::ProductDefinitionFormation)?;
     let product = scope.view_of(formation.reference("of_product")?, Entity::Product)?;
+    for attribute in ["id", "name"] {
+        if let Some(Parameter::String(token)) = product.get(attribute)
+            && string::decode(token.text()).lossy
+        {
+            let message = format!("PRODUCT: {attribute} has bytes that are not UTF-8, shown as ISO 8859-1");
+            sink.report(ModelCode::RawString.at(scope.file, product.name(), message));
+        }
+    }
     Ok(Product {
         id: product.text("id").into_owned(),
         name: product.text("name").into_owned(),

@@ -2,15 +2,44 @@
 //!
 //! Reports nothing and keeps nothing.
 
+use std::cell::Cell;
+
+use super::code::ModelCode;
 use super::error::ReadError;
+use crate::diagnostic::Sink;
 use crate::step::entity::Entity;
 use crate::step::schema;
 use crate::step::view::EntityView;
 use crate::step::{ExchangeStructure, Instance, InstanceName};
 
+/// Habits of the file that are worth one warning, with the first record that shows each.
+#[derive(Default)]
+pub(super) struct Habits {
+    /// Coordinates without a point.
+    pub(super) integer: Cell<Option<InstanceName>>,
+    /// Coordinates with a lower-case exponent.
+    pub(super) exponent: Cell<Option<InstanceName>>,
+}
+
+impl Habits {
+    /// Reports what was seen.
+    pub(super) fn report(&self, file: &ExchangeStructure, sink: &mut dyn Sink) {
+        if let Some(name) = self.integer.get() {
+            let message = "an integer where a real is required; this is said once for a file".to_owned();
+            sink.report(ModelCode::IntegerForReal.at(file, name, message));
+        }
+        if let Some(name) = self.exponent.get() {
+            let message = "a real with a lower-case exponent; this is said once for a file".to_owned();
+            sink.report(ModelCode::LowerCaseExponent.at(file, name, message));
+        }
+    }
+}
+
 /// The file and the angle unit that its numbers are in.
 #[derive(Clone, Copy)]
 pub(super) struct Scope<'a> {
+    /// Where unusual spelling is noted.
+    pub(super) habits: &'a Habits,
     /// The file.
     pub(super) file: &'a ExchangeStructure,
     /// Radians per angle unit of the context.
@@ -30,19 +59,13 @@ impl<'a> Scope<'a> {
     }
 
     /// The view of a name that must be of an entity or one of its subtypes.
-    pub(super) fn view_of(
-        &self,
-        name: InstanceName,
-        expected: Entity,
-    ) -> Result<EntityView<'a>, ReadError> {
+    pub(super) fn view_of(&self, name: InstanceName, expected: Entity) -> Result<EntityView<'a>, ReadError> {
         let instance = self.instance(name)?;
         match EntityView::of(instance).filter(|view| view.is(expected)) {
             Some(view) => Ok(view),
-            None => Err(ReadError::WrongEntity {
-                name,
-                found: entity_name(instance),
-                expected: expected.name(),
-            }),
+            None => {
+                Err(ReadError::WrongEntity { name, found: entity_name(instance), expected: expected.name() })
+            }
         }
     }
 }

@@ -67,8 +67,7 @@ impl WrittenKnots<'_> {
 /// The knot vector of a form without written knots, ISO 10303-42 `default_b_spline_knots`.
 pub(super) fn implied_knots(form: Form, degree: usize, points: usize) -> Result<KnotVector, ReadError> {
     check_degree(degree)?;
-    let too_few =
-        KnotVectorError::TooFew { degree, expected: 2 * (degree + 1), found: points + degree + 1 };
+    let too_few = KnotVectorError::TooFew { degree, expected: 2 * (degree + 1), found: points + degree + 1 };
     let n_spans = points.checked_sub(degree).filter(|&n| n > 0).ok_or(too_few)?;
     let knots = match form {
         Form::Uniform => (0..points + degree + 1).map(|i| i as f64 - degree as f64).collect(),
@@ -76,7 +75,9 @@ pub(super) fn implied_knots(form: Form, degree: usize, points: usize) -> Result<
             let segments = (points - 1) / degree;
             if segments * degree != points - 1 {
                 let expected = (segments + 1) * degree + 1;
-                return Err(crate::geometry::nurbs::NetError::CountMismatch { expected, found: points }.into());
+                return Err(
+                    crate::geometry::nurbs::NetError::CountMismatch { expected, found: points }.into()
+                );
             }
             std::iter::once(0.0)
                 .chain((0..=segments).flat_map(|i| std::iter::repeat_n(i as f64, degree)))

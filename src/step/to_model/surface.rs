@@ -2,10 +2,10 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::curve::{self, positive};
+use super::curve::{self, Trims, positive};
 use super::error::ReadError;
 use super::placement::{frame, point3, vector3};
-use super::scope::Scope;
+use super::scope::{Scope, entity_name};
 use super::spline::{Form, WrittenKnots, apply_weights, implied_knots};
 use crate::geometry::nurbs::{KnotVector, NurbsSurface};
 use crate::geometry::{Curve, Surface};
@@ -73,8 +73,14 @@ fn torus(scope: Scope<'_>, view: &EntityView<'_>) -> Result<Surface, ReadError> 
 }
 
 fn swept(scope: Scope<'_>, view: &EntityView<'_>) -> Result<Box<Curve>, ReadError> {
-    let (name, _) = curve::resolve(scope, view.reference("swept_curve")?)?;
-    Ok(Box::new(curve::read(scope, name)?))
+    let (name, _) = curve::resolve(scope, view.reference("swept_curve")?, Trims::Follow)?;
+    let curve = curve::read(scope, name).map_err(|source| ReadError::Basis {
+        attribute: "swept_curve",
+        name,
+        entity: scope.file.instance(name).map(entity_name).unwrap_or_default(),
+        source: Box::new(source),
+    })?;
+    Ok(Box::new(curve))
 }
 
 /// A B-spline surface of any form, with weights or without.
@@ -103,7 +109,7 @@ fn spline(scope: Scope<'_>, view: &EntityView<'_>) -> Result<NurbsSurface, ReadE
         let weights = view.list("weights_data")?.filter_map(|row| row.as_list()).flatten();
         apply_weights(&mut points, weights.map(|weight: Parameter<'_>| weight.as_f64().unwrap_or(f64::NAN)))?;
     }
-    Ok(NurbsSurface::new(knots_u, knots_v, points)?)
+    Ok(NurbsSurface::new(knots_u, knots_v, points)?.clamped())
 }
 
 fn knots(
@@ -128,9 +134,8 @@ fn knots(
             };
             Ok([u.read(degrees[0], counts[0])?, v.read(degrees[1], counts[1])?])
         }
-        Some(form) => Ok([
-            implied_knots(form, degrees[0], counts[0])?,
-            implied_knots(form, degrees[1], counts[1])?,
-        ]),
+        Some(form) => {
+            Ok([implied_knots(form, degrees[0], counts[0])?, implied_knots(form, degrees[1], counts[1])?])
+        }
     }
 }

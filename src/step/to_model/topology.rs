@@ -6,23 +6,23 @@
 use std::collections::HashMap;
 
 use super::code::ModelCode;
-use super::curve;
+use super::curve::{self, Trims};
 use super::curve2d;
 use super::error::ReadError;
 use super::placement::point3;
 use super::scope::{Scope, entity_name};
 use super::surface;
 use crate::brep::{
-    BodyId, Brep, Coedge, CurveId, Edge, EdgeId, Face, FaceId, Loop, LoopId, Shell, ShellId, SurfaceId,
-    Vertex, VertexId,
+    Arena, BodyId, Brep, Coedge, CoedgeId, CurveId, Edge, EdgeId, Face, FaceId, Loop, LoopId, Shell, ShellId,
+    SurfaceId, Vertex, VertexId,
 };
 use crate::diagnostic::Sink;
 use crate::geometry::{Carried, Curve, Surface};
+use crate::math::Point3;
 use crate::model::{Attributes, Origin, Origins};
-use crate::brep::Arena;
-use crate::step::InstanceName;
 use crate::step::entity::Entity;
-use crate::step::view::{EntityView, reference};
+use crate::step::view::{EntityView, list, reference};
+use crate::step::{InstanceName, Parameters};
 
 /// Oriented elements around oriented elements that are followed before the chain counts as a cycle.
 const MAX_NESTED_ORIENTATIONS: usize = 64;
@@ -71,13 +71,19 @@ impl<'a, 's> Builder<'a, 's> {
         self.sink.report(code.at(self.scope.file, name, message));
     }
 
-    fn report_geometry(&mut self, name: InstanceName, entity: &str, error: &ReadError) {
-        self.report(error.geometry_code(), name, format!("{entity}: {error}"));
+    /// Reports at the geometry, or at its user when the geometry's record does not exist.
+    fn report_geometry(&mut self, name: InstanceName, user: InstanceName, error: &ReadError) {
+        let at = if self.scope.file.instance(name).is_some() { name } else { user };
+        let entity = self.entity_name(at);
+        self.report(error.geometry_code(), at, format!("{entity}: {error}"));
     }
 
     fn report_topology(&mut self, name: InstanceName, error: &ReadError) {
-        let entity = self.entity_name(name);
-        self.report(error.topology_code(), name, format!("{entity}: {error}"));
+        let message = match self.entity_name(name) {
+            entity if entity.is_empty() => error.to_string(),
+            entity => format!("{entity}: {error}"),
+        };
+        self.report(error.topology_code(), name, message);
     }
 
     fn entity_name(&self, name: InstanceName) -> String {
@@ -85,7 +91,7 @@ impl<'a, 's> Builder<'a, 's> {
     }
 
     /// The curve of a record that is no surface curve; read once.
-    pub(super) fn curve(&mut self, name: InstanceName) -> CurveId {
+    pub(super) fn curve(&mut self, name: InstanceName, user: InstanceName) -> CurveId {
         if let Some(&id) = self.curves.get(&name) {
             return id;
         }
@@ -93,7 +99,7 @@ impl<'a, 's> Builder<'a, 's> {
             Ok(curve) => Carried::Read(curve),
             Err(error) => {
                 let entity = self.entity_name(name);
-                self.report_geometry(name, &entity, &error);
+                self.report_geometry(name, user, &error);
                 Carried::Unread { entity, reason: error.to_string() }
             }
         };
@@ -103,7 +109,7 @@ impl<'a, 's> Builder<'a, 's> {
         id
     }
 
-    fn surface(&mut self, name: InstanceName) -> SurfaceId {
+    fn surface(&mut self, name: InstanceName, user: InstanceName) -> SurfaceId {
         if let Some(&id) = self.surfaces.get(&name) {
             return id;
         }
@@ -111,7 +117,7 @@ impl<'a, 's> Builder<'a, 's> {
             Ok(surface) => Carried::Read(surface),
             Err(error) => {
                 let entity = self.entity_name(name);
-                self.report_geometry(name, &entity, &error);
+                self.report_geometry(name, user, &error);
                 Carried::Unread { entity, reason: error.to_string() }
             }
         };
@@ -138,7 +144,7 @@ impl<'a, 's> Builder<'a, 's> {
         vertex
     }
 
-    fn push_vertex(&mut self, name: InstanceName, point: crate::math::Point3<f64>) -> VertexId {
+    fn push_vertex(&mut self, name: InstanceName, point: Point3<f64>) -> VertexId {
         self.origins.vertices.push(origin(name));
         self.brep.vertices.push(Vertex { point })
     }
@@ -158,9 +164,10 @@ impl<'a, 's> Builder<'a, 's> {
         let start = self.vertex(reference(start, "edge_start")?)?;
         let end = self.vertex(reference(end, "edge_end")?)?;
         let holder = self.edge_curve(view)?;
-        let (curve_name, around) = curve::resolve(self.scope, holder.reference("edge_geometry")?)?;
+        let (curve_name, around) =
+            curve::resolve(self.scope, holder.reference("edge_geometry")?, Trims::Follow)?;
         let same_sense = holder.boolean("same_sense")?;
-        let curve = self.curve(curve_name);
+        let curve = self.curve(curve_name, name);
         self.origins.edges.push(origin(name));
         let id = self.brep.edges.push(Edge { curve, start, end, same_sense });
         if let Some(surface_curve) = around {
@@ -213,45 +220,44 @@ impl<'a, 's> Builder<'a, 's> {
         Err(ReadError::Cycle(name))
     }
 
-    /// Reads one bound of a face. What was pushed before an error stays unreferenced in the arenas.
-    fn bound(&mut self, name: InstanceName, face: FaceId, surface: &FaceSurface) -> Result<LoopId, ReadError> {
+    /// Reads one bound of a face. Nothing of a bound with an error is kept but its edges and vertices.
+    fn bound(&mut self, name: InstanceName, face: FaceId, on: &FaceSurface) -> Result<LoopId, ReadError> {
         let view = self.scope.view_of(name, Entity::FaceBound)?;
-        let bound = view.reference("bound")?;
         let forward = view.boolean("orientation")?;
-        let path = self.scope.view_of(bound, Entity::Loop)?;
-        let in_loop = self.brep.loops.next_id();
-        let mut vertex = None;
-        let mut uses = Vec::new();
-        match path.entity() {
-            Entity::VertexLoop => vertex = Some(self.vertex(path.reference("loop_vertex")?)?),
-            Entity::PolyLoop => uses = self.poly_loop(&path)?,
-            _ => {
-                for member in path.references("edge_list")? {
-                    let (edge, forward) = self.oriented_edge(member)?;
-                    uses.push((member, edge, forward));
-                }
-            }
-        }
-        if vertex.is_none() && uses.is_empty() {
-            return Err(ReadError::Empty { attribute: "edge_list" });
-        }
         let outer = view.is(Entity::FaceOuterBound);
-        let coedges = uses.into_iter().map(|(n, e, f)| self.push_coedge(n, e, f, in_loop, surface)).collect();
+        let path = self.scope.view_of(view.reference("bound")?, Entity::Loop)?;
+        let mut vertex = None;
+        let uses = match path.entity() {
+            Entity::VertexLoop => {
+                vertex = Some(self.vertex(path.reference("loop_vertex")?)?);
+                Vec::new()
+            }
+            Entity::PolyLoop => self.poly_loop(&path)?,
+            _ => self.edge_loop(&path)?,
+        };
+        let in_loop = self.brep.loops.next_id();
+        let coedges = uses.into_iter().map(|edge_use| self.coedge(edge_use, in_loop, on)).collect();
         self.origins.loops.push(origin(name));
         Ok(self.brep.loops.push(Loop { face, outer, forward, coedges, vertex }))
     }
 
-    fn push_coedge(
-        &mut self,
-        name: InstanceName,
-        edge: EdgeId,
-        forward: bool,
-        in_loop: LoopId,
-        surface: &FaceSurface,
-    ) -> crate::brep::CoedgeId {
-        let record = self.pcurve_record(edge, forward, surface.name);
+    fn edge_loop(&mut self, path: &EntityView<'a>) -> Result<Vec<EdgeUse>, ReadError> {
+        let mut uses = Vec::new();
+        for name in path.references("edge_list")? {
+            let (edge, forward) = self.oriented_edge(name)?;
+            uses.push(EdgeUse { name, edge, forward });
+        }
+        if uses.is_empty() {
+            return Err(ReadError::Empty { attribute: "edge_list" });
+        }
+        Ok(uses)
+    }
+
+    fn coedge(&mut self, edge_use: EdgeUse, in_loop: LoopId, on: &FaceSurface) -> CoedgeId {
+        let EdgeUse { name, edge, forward } = edge_use;
+        let record = self.pcurve_record(edge, forward, on.name);
         let mut pcurve = None;
-        if let (Some(record), Some(scale)) = (record, surface.scale) {
+        if let (Some(record), Some(scale)) = (record, on.scale) {
             match curve2d::read(self.scope, record, scale) {
                 Ok(curve) => pcurve = Some(curve),
                 Err(error) => self.report(ModelCode::BadPcurve, record, format!("PCURVE: {error}")),
@@ -272,7 +278,7 @@ impl<'a, 's> Builder<'a, 's> {
     }
 
     /// Straight edges between the points of a poly loop, shared with its neighbours.
-    fn poly_loop(&mut self, path: &EntityView<'a>) -> Result<Vec<(InstanceName, EdgeId, bool)>, ReadError> {
+    fn poly_loop(&mut self, path: &EntityView<'a>) -> Result<Vec<EdgeUse>, ReadError> {
         let mut corners = Vec::new();
         for point in path.references("polygon")? {
             let vertex = match self.vertices.get(&point) {
@@ -286,6 +292,9 @@ impl<'a, 's> Builder<'a, 's> {
             };
             corners.push(vertex);
         }
+        if corners.is_empty() {
+            return Err(ReadError::Empty { attribute: "polygon" });
+        }
         let mut uses = Vec::with_capacity(corners.len());
         for (index, &start) in corners.iter().enumerate() {
             let end = corners[(index + 1) % corners.len()];
@@ -294,7 +303,7 @@ impl<'a, 's> Builder<'a, 's> {
                 Some(&edge) => edge,
                 None => self.straight_edge(path.name(), key)?,
             };
-            uses.push((path.name(), edge, start == key.0));
+            uses.push(EdgeUse { name: path.name(), edge, forward: start == key.0 });
         }
         Ok(uses)
     }
@@ -317,54 +326,68 @@ impl<'a, 's> Builder<'a, 's> {
         Ok(edge)
     }
 
-    /// Reads one face of a shell; `None` when the record is no face at all.
+    /// Reads one face of a shell; `None`, and a diagnostic, when the record is no face at all.
     fn face(&mut self, name: InstanceName, shell: ShellId) -> Option<FaceId> {
-        let face = self.underlying_face(name).and_then(|(view, forward)| {
-            let [bounds, geometry] = view.fields(["bounds", "face_geometry"]);
-            let bounds = crate::step::view::list(bounds, "bounds")?;
-            let geometry = reference(geometry, "face_geometry")?;
-            Ok((view, forward, bounds, geometry, view.boolean("same_sense")?))
-        });
-        let (view, forward, bounds, geometry, same_sense) = match face {
-            Ok(face) => face,
+        let record = match self.face_record(name) {
+            Ok(record) => record,
             Err(error) => {
                 self.report_topology(name, &error);
                 return None;
             }
         };
-        let surface = self.surface(geometry);
-        let scale = self.brep.surfaces[surface].read().map(|s| curve2d::parameter_scale(s, self.scope.radians));
-        let on = FaceSurface { name: geometry, scale };
-        let id = self.brep.faces.next_id();
+        let surface = self.surface(record.geometry, record.view.name());
+        let read = self.brep.surfaces[surface].read();
+        let scale = read.map(|surface| curve2d::parameter_scale(surface, self.scope.radians));
+        let on = FaceSurface { name: record.geometry, scale };
+        let face = self.brep.faces.next_id();
+        let (loops, broken) = self.bounds(&record, face, &on);
+        let surface = match broken {
+            Some(reason) => {
+                let entity = self.entity_name(record.geometry);
+                self.push_surface(record.geometry, Carried::Unread { entity, reason })
+            }
+            None => surface,
+        };
+        let text = record.view.text("name").into_owned();
+        self.faces.push(Attributes { name: text, ..Attributes::default() });
+        self.origins.faces.push(origin(record.view.name()));
+        Some(self.brep.faces.push(Face { surface, same_sense: record.same_sense, loops, shell }))
+    }
+
+    fn face_record(&self, name: InstanceName) -> Result<FaceRecord<'a>, ReadError> {
+        let (view, forward) = self.underlying_face(name)?;
+        let [bounds, geometry] = view.fields(["bounds", "face_geometry"]);
+        let bounds = list(bounds, "bounds")?;
+        let geometry = reference(geometry, "face_geometry")?;
+        let same_sense = view.boolean("same_sense")? == forward;
+        Ok(FaceRecord { view, bounds, geometry, same_sense, forward })
+    }
+
+    /// Loops of a face, and why one of its bounds cannot be built.
+    fn bounds(
+        &mut self,
+        record: &FaceRecord<'a>,
+        face: FaceId,
+        on: &FaceSurface,
+    ) -> (Vec<LoopId>, Option<String>) {
         let mut loops = Vec::new();
         let mut broken = None;
-        for bound in bounds.filter_map(|member| member.as_reference()) {
-            match self.bound(bound, id, &on) {
+        for bound in record.bounds.clone().filter_map(|member| member.as_reference()) {
+            match self.bound(bound, face, on) {
                 Ok(bound) => {
-                    self.brep.loops[bound].forward ^= !forward;
+                    self.brep.loops[bound].forward ^= !record.forward;
                     loops.push(bound);
                 }
                 Err(error) => {
                     self.report_topology(bound, &error);
-                    broken.get_or_insert(format!("bound {bound} cannot be built: {error}"));
+                    broken.get_or_insert_with(|| format!("bound {bound} cannot be built: {error}"));
                 }
             }
         }
-        let surface = match broken {
-            Some(reason) => {
-                let entity = self.entity_name(geometry);
-                self.push_surface(geometry, Carried::Unread { entity, reason })
-            }
-            None => surface,
-        };
-        let name_text = view.text("name").into_owned();
-        self.faces.push(Attributes { name: name_text, ..Attributes::default() });
-        self.origins.faces.push(origin(view.name()));
-        let same_sense = same_sense == forward;
-        Some(self.brep.faces.push(Face { surface, same_sense, loops, shell }))
+        (loops, broken)
     }
 
-    /// The face inside oriented faces and subfaces' parents, and whether it keeps its sense.
+    /// The face inside oriented faces, and whether it keeps its sense.
     fn underlying_face(&self, name: InstanceName) -> Result<(EntityView<'a>, bool), ReadError> {
         let mut current = name;
         let mut forward = true;
@@ -393,19 +416,17 @@ impl<'a, 's> Builder<'a, 's> {
             self.report(ModelCode::SharedShell, view.name(), message);
             return None;
         }
-        let members = match view.list("cfs_faces") {
-            Ok(members) => members,
-            Err(error) => {
-                self.report_topology(view.name(), &error.into());
-                return None;
-            }
-        };
         let closed = view.is(Entity::ClosedShell);
         self.origins.shells.push(origin(view.name()));
         let id = self.brep.shells.push(Shell { faces: Vec::new(), closed, forward, body });
         self.shells.insert(view.name(), id);
-        let faces = members.filter_map(|m| m.as_reference()).filter_map(|m| self.face(m, id)).collect();
-        self.brep.shells[id].faces = faces;
+        match view.references("cfs_faces") {
+            Ok(members) => {
+                let faces = members.filter_map(|member| self.face(member, id)).collect();
+                self.brep.shells[id].faces = faces;
+            }
+            Err(error) => self.report_topology(view.name(), &error.into()),
+        }
         Some(id)
     }
 
@@ -427,9 +448,27 @@ impl<'a, 's> Builder<'a, 's> {
     }
 }
 
+/// What a face says of itself.
+struct FaceRecord<'a> {
+    view: EntityView<'a>,
+    bounds: Parameters<'a>,
+    geometry: InstanceName,
+    /// With the orientation of the oriented faces around it.
+    same_sense: bool,
+    /// Whether the oriented faces around it leave it as it is.
+    forward: bool,
+}
+
 /// The surface of the face that is being built.
 struct FaceSurface {
     name: InstanceName,
     /// Model parameters per file parameter; `None` when the surface was not read.
     scale: Option<[f64; 2]>,
+}
+
+/// An edge as a loop uses it, and the record that says so.
+struct EdgeUse {
+    name: InstanceName,
+    edge: EdgeId,
+    forward: bool,
 }

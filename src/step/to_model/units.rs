@@ -74,7 +74,11 @@ fn read(scope: Scope<'_>, name: InstanceName, sink: &mut dyn Sink) -> Context {
         }
     }
     let mut missing = |what: &str| {
-        sink.report(ModelCode::MissingUnit.at(scope.file, name, format!("the context has no unit of {what}")));
+        sink.report(ModelCode::MissingUnit.at(
+            scope.file,
+            name,
+            format!("the context has no unit of {what}"),
+        ));
     };
     let length = length.unwrap_or_else(|| {
         missing("length: millimetre is assumed");
@@ -97,7 +101,8 @@ fn uncertainty(scope: Scope<'_>, context: &EntityView<'_>, length: &LengthUnit) 
             return None;
         };
         // Equal units must not round: most files count the uncertainty as they count lengths.
-        let factor = if unit.metres.to_bits() == length.metres.to_bits() { 1.0 } else { unit.metres / length.metres };
+        let factor =
+            if unit.metres.to_bits() == length.metres.to_bits() { 1.0 } else { unit.metres / length.metres };
         Some(value * factor).filter(|v| v.is_finite() && *v > 0.0).map(Tolerance)
     })
 }
