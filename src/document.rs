@@ -72,7 +72,9 @@ const HEAD: usize = 4096;
 /// and a sequence number behind it.
 fn is_iges(bytes: &[u8]) -> bool {
     matches!(bytes.get(72), Some(b'S' | b'C' | b'B'))
-        && bytes.get(73..80).is_some_and(|n| n.iter().all(|b| b.is_ascii_digit() || *b == b' ') && n[6] == b'1')
+        && bytes
+            .get(73..80)
+            .is_some_and(|n| n.iter().all(|b| b.is_ascii_digit() || *b == b' ') && n[6] == b'1')
 }
 
 /// Why a file is not read.
@@ -154,7 +156,8 @@ impl Document {
     /// A lower-case fragment naming the entity that cannot be written.
     pub fn lower(&self, _model: &Model, changes: &ChangeSet, _stamp: &Stamp) -> Result<Patch, LowerError> {
         if changes.is_empty() {
-            return Patch::new(self.source().bytes().len(), Vec::new()).map_err(|e| LowerError(e.to_string()));
+            return Patch::new(self.source().bytes().len(), Vec::new())
+                .map_err(|e| LowerError(e.to_string()));
         }
         Err(LowerError("changes are not written yet".to_owned()))
     }

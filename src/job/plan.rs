@@ -148,8 +148,7 @@ fn walk(root: &Path, depth: usize, glob: &GlobMatcher) -> Vec<PathBuf> {
 
 fn nearest_file(path: &Path, name: &str) -> Option<String> {
     let folder = std::fs::read_dir(path.parent()?).ok()?;
-    let mut names: Vec<String> =
-        folder.filter_map(|e| e.ok()?.file_name().into_string().ok()).collect();
+    let mut names: Vec<String> = folder.filter_map(|e| e.ok()?.file_name().into_string().ok()).collect();
     names.sort();
     super::nearest::nearest(name, names.iter().map(String::as_str)).map(str::to_owned)
 }
@@ -203,7 +202,8 @@ mod tests {
         let folder = folder(&["b.step", "a.stp", "deep/c.step", "d.igs"]);
         let job = job(&["*.st*p", "b.step", "deep/*.step"], "out/{stem}-x.{ext}");
         let parts = parts(&job, folder.path()).expect("a plan");
-        let names: Vec<_> = parts.iter().map(|p| p.output.strip_prefix(folder.path()).expect("below")).collect();
+        let names: Vec<_> =
+            parts.iter().map(|p| p.output.strip_prefix(folder.path()).expect("below")).collect();
         assert_eq!(names, ["out/a-x.stp", "out/b-x.step", "out/c-x.step"].map(Path::new));
     }
 
