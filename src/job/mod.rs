@@ -6,6 +6,7 @@
 mod clock;
 pub mod failure;
 pub mod file;
+pub mod inventory;
 mod json;
 pub mod judge;
 pub mod measure;

@@ -8,7 +8,8 @@ use crate::math::{Matrix3, Point3, Vector3};
 use crate::model::{ChangeSet, Model, Origin};
 use crate::ops::OperationError;
 use crate::ops::constrained_scale::{
-    Continuity, Energy, Freedom, Hold, HoldTarget, Params, Scaling, Scope, plan,
+    Continuity, Energy, Freedom, Hold, Scaling,
+    plan::{HoldTarget, Params, Scope, plan},
 };
 use crate::source::Source;
 use crate::units::LengthUnit;

@@ -211,17 +211,17 @@ fn product_names(model: &Model, face: FaceId) -> Vec<String> {
     model.product_of(face).map(|p| vec![p.name.clone(), p.id.clone()]).unwrap_or_default()
 }
 
-fn layers(model: &Model, face: FaceId) -> Vec<String> {
+pub(super) fn layers(model: &Model, face: FaceId) -> Vec<String> {
     let body = &model.bodies[model.body_of(face)].own.layers;
     model.faces[face].layers.iter().chain(body).cloned().collect()
 }
 
-fn bytes(colour: Colour) -> [u8; 3] {
+pub(super) fn bytes(colour: Colour) -> [u8; 3] {
     // The cast is of a number between 0 and 255.
     [colour.red, colour.green, colour.blue].map(|part| (part.clamp(0.0, 1.0) * 255.0).round() as u8)
 }
 
-fn hex([red, green, blue]: [u8; 3]) -> String {
+pub(super) fn hex([red, green, blue]: [u8; 3]) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
@@ -284,6 +284,25 @@ fn area(model: &Model, face: FaceId) -> Option<f64> {
     let triangles = triangles(model, face);
     let one = |[a, b, c]: &[Point3<f64>; 3]| 0.5 * (b - a).cross(&(c - a)).norm();
     (!triangles.is_empty()).then(|| triangles.iter().map(one).sum())
+}
+
+/// Size and place of a face by its triangulation.
+pub(super) struct Shape {
+    pub area: f64,
+    pub bounds: [[f64; 3]; 2],
+}
+
+/// Size and place of a face; `None` when it cannot be triangulated.
+pub(super) fn shape(model: &Model, face: FaceId) -> Option<Shape> {
+    let area = area(model, face)?;
+    let (mut least, mut greatest) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for point in triangles(model, face).iter().flatten() {
+        for k in 0..3 {
+            least[k] = least[k].min(point[k]);
+            greatest[k] = greatest[k].max(point[k]);
+        }
+    }
+    Some(Shape { area, bounds: [least, greatest] })
 }
 
 fn by_area(model: &Model, faces: &[FaceId], extreme: Extreme) -> Vec<FaceId> {
