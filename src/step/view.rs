@@ -97,8 +97,14 @@ impl<'a> EntityView<'a> {
     /// Where the value of an attribute stands in the file.
     #[must_use]
     pub fn attribute_span(&self, attribute: &str) -> Option<Span> {
+        self.get_with_span(attribute).map(|(_, span)| span)
+    }
+
+    /// One attribute with the place of its value.
+    #[must_use]
+    pub fn get_with_span(&self, attribute: &str) -> Option<(Parameter<'a>, Span)> {
         let [found] = self.fields_with_spans([attribute]);
-        found.map(|(_, span)| span)
+        found
     }
 
     fn fields_with_spans<const N: usize>(&self, names: [&str; N]) -> [Option<(Parameter<'a>, Span)>; N] {
