@@ -96,9 +96,12 @@ pub(crate) fn span(start: usize, end: usize) -> Span {
 /// The token that begins at `at < bytes.len()` and its end, which lies behind `at`.
 pub(crate) fn token_at(bytes: &[u8], at: usize) -> (TokenKind, usize) {
     let trivia = whitespace_end(bytes, at);
-    if trivia > at {
-        return (TokenKind::Whitespace, trivia);
-    }
+    if trivia > at { (TokenKind::Whitespace, trivia) } else { solid_token_at(bytes, at) }
+}
+
+/// Like [`token_at`], where no white space begins at `at`.
+#[inline]
+pub(crate) fn solid_token_at(bytes: &[u8], at: usize) -> (TokenKind, usize) {
     match bytes[at] {
         b'/' => comment_end(bytes, at).map_or((TokenKind::Junk, at + 1), |end| (TokenKind::Comment, end)),
         b'(' => (TokenKind::Open, at + 1),
@@ -159,7 +162,16 @@ fn is_byte_order_mark(bytes: &[u8], at: usize) -> bool {
 }
 
 /// End of white space and comments at `at`. An unclosed comment runs to the end.
-pub(crate) fn trivia_end(bytes: &[u8], mut at: usize) -> usize {
+#[inline]
+pub(crate) fn trivia_end(bytes: &[u8], at: usize) -> usize {
+    // Between most tokens of most files nothing stands.
+    match bytes.get(at) {
+        Some(b'#' | b'\'' | b'(' | b')' | b',' | b'0'..=b'9' | b'A'..=b'Z') | None => at,
+        Some(_) => trivia_end_slow(bytes, at),
+    }
+}
+
+fn trivia_end_slow(bytes: &[u8], mut at: usize) -> usize {
     loop {
         at = whitespace_end(bytes, at);
         if bytes.get(at) != Some(&b'/') {
@@ -179,7 +191,16 @@ pub(crate) fn comment_end(bytes: &[u8], at: usize) -> Option<usize> {
 }
 
 /// Offset behind the closing quote of the string whose opening quote is at `at`.
+#[inline]
 pub(crate) fn string_end(bytes: &[u8], at: usize) -> Option<usize> {
+    // Most strings are empty.
+    match bytes.get(at + 1..at + 3) {
+        Some([b'\'', next]) if *next != b'\'' => Some(at + 2),
+        _ => string_end_slow(bytes, at),
+    }
+}
+
+fn string_end_slow(bytes: &[u8], at: usize) -> Option<usize> {
     let mut from = at + 1;
     loop {
         let quote = from + memchr(b'\'', bytes.get(from..)?)?;
@@ -188,6 +209,28 @@ pub(crate) fn string_end(bytes: &[u8], at: usize) -> Option<usize> {
         }
         from = quote + 2;
     }
+}
+
+/// Reads the digits from `at` on: their value, `None` when it exceeds 64 bits or there are none, and their end.
+#[inline]
+pub(crate) fn number_at(bytes: &[u8], at: usize) -> (Option<u64>, usize) {
+    /// Digits that always fit.
+    const SAFE_DIGITS: usize = 19;
+    let mut end = at;
+    let mut value = 0_u64;
+    while let Some(digit @ b'0'..=b'9') = bytes.get(end) {
+        value = value.wrapping_mul(10).wrapping_add(u64::from(digit - b'0'));
+        end += 1;
+    }
+    match end - at {
+        0 => (None, end),
+        1..=SAFE_DIGITS => (Some(value), end),
+        _ => (checked_number(&bytes[at..end]), end),
+    }
+}
+
+fn checked_number(digits: &[u8]) -> Option<u64> {
+    digits.iter().try_fold(0_u64, |value, digit| value.checked_mul(10)?.checked_add(u64::from(digit - b'0')))
 }
 
 fn binary_end(bytes: &[u8], at: usize) -> Option<usize> {
@@ -214,6 +257,7 @@ pub(crate) fn digits_end(bytes: &[u8], at: usize) -> usize {
     run_end(bytes, at, |byte| byte.is_ascii_digit())
 }
 
+#[inline]
 fn run_end(bytes: &[u8], mut at: usize, accept: impl Fn(u8) -> bool) -> usize {
     while bytes.get(at).is_some_and(|&byte| accept(byte)) {
         at += 1;
