@@ -384,3 +384,50 @@ fn trimmed_end(bytes: &[u8], start: usize, mut end: usize) -> usize {
     }
     end
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parameters(text: &str) -> Parameters<'_> {
+        Parameters::new(text.as_bytes(), syntax::span(0, text.len()), Comments::Possible)
+    }
+
+    #[test]
+    fn every_kind_is_recognised() {
+        let text = "$,*,1,-2.5E1,'a,b)',.T.,\"0F\",#12,(1,(2)),LENGTH_MEASURE(3.),@4,<u#v>,!MY_TYPE()";
+        let read: Vec<_> = parameters(text).collect();
+        assert!(matches!(read[0], Parameter::Omitted) && matches!(read[1], Parameter::Derived));
+        assert_eq!((read[2].as_i64(), read[2].as_f64()), (Some(1), Some(1.0)));
+        assert_eq!((read[3].as_i64(), read[3].as_f64()), (None, Some(-25.0)));
+        assert_eq!(read[4].as_str().as_deref(), Some("a,b)"));
+        assert_eq!((read[5].as_enum(), read[5].as_bool()), (Some(b"T".as_slice()), Some(true)));
+        assert!(matches!(read[6], Parameter::Binary(_)));
+        assert_eq!(read[7].as_reference(), Some(InstanceName(12)));
+        assert_eq!(read[8].as_list().map(Iterator::count), Some(2));
+        assert_eq!(read[9].as_f64(), Some(3.0));
+        assert!(matches!(read[10], Parameter::External(_)) && matches!(read[11], Parameter::External(_)));
+        assert!(matches!(&read[12], Parameter::Typed { keyword: b"!MY_TYPE", .. }));
+        assert_eq!(read.len(), 13);
+    }
+
+    #[test]
+    fn malformed_parameters_do_not_hide_their_neighbours() {
+        for (text, count) in
+            [("1,,2", 3), ("1,", 2), (",", 2), ("1 2,3", 2), ("NAN,3", 2), ("(1,2", 1), ("", 0), (" ", 0)]
+        {
+            let read: Vec<_> = parameters(text).collect();
+            assert_eq!(read.len(), count, "{text}");
+            let malformed = read.iter().any(|parameter| matches!(parameter, Parameter::Malformed(_)));
+            assert_eq!(malformed, count > 0, "{text}");
+        }
+        assert_eq!(parameters("1 2,3").nth(1).and_then(|p| p.as_i64()), Some(3));
+    }
+
+    #[test]
+    fn places_cover_the_whole_parameter() {
+        let text = " 'x' , /*c*/ A( 1 ) , ( 2 ) ";
+        let spans: Vec<_> = parameters(text).with_spans().map(|(_, span)| &text[span.range()]).collect();
+        assert_eq!(spans, ["'x'", "A( 1 )", "( 2 )"]);
+    }
+}

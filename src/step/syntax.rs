@@ -253,7 +253,22 @@ pub(crate) fn keyword_end(bytes: &[u8], at: usize) -> usize {
     run_end(bytes, at, is_keyword_byte)
 }
 
-pub(crate) fn digits_end(bytes: &[u8], at: usize) -> usize {
+/// End of the decimal digits from `at` on. Coordinates have many, so eight are looked at together.
+#[inline]
+pub(crate) fn digits_end(bytes: &[u8], mut at: usize) -> usize {
+    const HIGH: u64 = 0xf0f0_f0f0_f0f0_f0f0;
+    const ZEROS: u64 = 0x3030_3030_3030_3030;
+    const SIXES: u64 = 0x0606_0606_0606_0606;
+    while let Some(chunk) = bytes.get(at..).and_then(|rest| rest.first_chunk::<8>()) {
+        let word = u64::from_le_bytes(*chunk);
+        // A digit has the high half 3, and keeps it when 6 is added. A carry out of a byte disturbs only bytes
+        // behind it, and that byte is no digit itself.
+        let others = ((word & HIGH) ^ ZEROS) | ((word.wrapping_add(SIXES) & HIGH) ^ ZEROS);
+        if others != 0 {
+            return at + (others.trailing_zeros() / 8) as usize;
+        }
+        at += 8;
+    }
     run_end(bytes, at, |byte| byte.is_ascii_digit())
 }
 
@@ -304,4 +319,22 @@ fn number_token(bytes: &[u8], at: usize) -> (TokenKind, usize) {
         }
     }
     (kind, end)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_of_digits_end_at_the_first_other_byte() {
+        for length in 0..20 {
+            for other in 0..=255_u8 {
+                let mut bytes = b"01234567890123456789"[..length].to_vec();
+                bytes.push(other);
+                bytes.extend_from_slice(b"7777777777");
+                let expected = if other.is_ascii_digit() { bytes.len() } else { length };
+                assert_eq!(digits_end(&bytes, 0), expected, "{other} behind {length} digits");
+            }
+        }
+    }
 }

@@ -119,7 +119,8 @@ proptest! {
         let record = structure.instance(InstanceName(name)).and_then(|i| i.record(b"x")).expect("one record");
         let parameters: Vec<_> = record.parameters().collect();
         prop_assert_eq!(parameters.len(), 4);
-        prop_assert_eq!(parameters[0].as_str().as_deref(), Some(text.as_str()));
+        let read = parameters[0].as_str().expect("a string");
+        prop_assert_eq!(&*read, text.as_str());
         let read: Vec<_> = parameters[1].as_list().expect("a list").filter_map(|p| p.as_f64()).map(f64::to_bits).collect();
         prop_assert_eq!(read, values.iter().map(|value| value.to_bits()).collect::<Vec<_>>());
         prop_assert_eq!(&parameters[2], &Parameter::Reference(InstanceName(name)));
