@@ -8,7 +8,7 @@ mod bodies {
 }
 
 /// Mutations of each seed.
-const ROUNDS: usize = 400;
+const ROUNDS: usize = 1_000;
 
 fn seeds() -> Vec<Vec<u8>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/seeds");

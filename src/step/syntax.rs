@@ -166,8 +166,9 @@ fn is_byte_order_mark(bytes: &[u8], at: usize) -> bool {
 pub(crate) fn trivia_end(bytes: &[u8], at: usize) -> usize {
     // Between most tokens of most files nothing stands.
     match bytes.get(at) {
-        Some(b'#' | b'\'' | b'(' | b')' | b',' | b'0'..=b'9' | b'A'..=b'Z') | None => at,
-        Some(_) => trivia_end_slow(bytes, at),
+        // Beginnings of white space, comments, print control directives and byte-order marks.
+        Some(0..=b' ' | b'/' | b'\\' | 0x7f | 0xef) => trivia_end_slow(bytes, at),
+        _ => at,
     }
 }
 
