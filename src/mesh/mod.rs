@@ -10,6 +10,7 @@ pub mod tessellate;
 mod triangle_mesh;
 
 pub use integrity::Integrity;
+pub use tessellate::{TessellateError, Tolerances, tessellate_bodies, tessellate_faces};
 pub use triangle_mesh::{Extents, Mesh};
 
 /// Why bytes are not a mesh.

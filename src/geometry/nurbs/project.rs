@@ -52,8 +52,8 @@ const STEP_END: f64 = 4.0 * f64::EPSILON;
 const COSINE_END: f64 = 1e-15;
 /// Part of the domain that one step may cross: keeps a wild first step from leaving the basin.
 const MAX_PART: f64 = 0.25;
-/// Rise of the squared distance, relative, that counts as rounding and not as uphill.
-const RISE: f64 = 1e-14;
+/// Rounding errors of a coordinate, in units of its last place, below which a change of distance says nothing.
+const NOISE: f64 = 16.0 * f64::EPSILON;
 
 impl NurbsCurve3 {
     /// The foot point reached from a seed: a local minimum of the distance over the domain.
@@ -85,12 +85,13 @@ impl NurbsCurve3 {
                 let next = (t + step).clamp(start, end);
                 let trial = self.derivatives(next);
                 let trial_square = (trial[0] - target.coords).norm_squared();
-                if trial_square <= square * (1.0 + RISE) {
+                let slack = 2.0 * square.sqrt() * NOISE * magnitude(target, &now[0]);
+                if trial_square <= square + slack {
                     // Near the foot the distance is flat to rounding: there the slope tells what is nearer.
                     let tangential =
                         |d: &[Vector3<f64>; 3]| d[1].dot(&(d[0] - target.coords)).abs() / d[1].norm();
                     let nearer =
-                        trial_square < square * (1.0 - RISE) || tangential(&trial) < tangential(&now);
+                        trial_square < square - slack || tangential(&trial) < tangential(&now);
                     let length = (trial[0] - now[0]).norm();
                     if nearer {
                         (t, now, square) = (next, trial, trial_square);
@@ -198,10 +199,11 @@ pub fn foot_point(
         let mut moved = false;
         for _ in 0..MAX_HALVINGS {
             let trial = stand(now.u + du, now.v + dv);
-            if trial.square <= now.square * (1.0 + RISE) {
+            let slack = 2.0 * now.square.sqrt() * NOISE * magnitude(target, &now.at.point.coords);
+            if trial.square <= now.square + slack {
                 let length = (trial.at.point - now.at.point).norm();
                 // Near the foot the distance is flat to rounding: there the slope tells what is nearer.
-                let closer = trial.square < now.square * (1.0 - RISE)
+                let closer = trial.square < now.square - slack
                     || trial.tangential(target) < now.tangential(target);
                 let end = STEP_END * magnitude(target, &trial.at.point.coords);
                 if closer {
