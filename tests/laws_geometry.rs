@@ -9,8 +9,8 @@ use resurf::math::{Affine, Matrix3, Point3, Vector3, quadrature::gauss_legendre}
 
 /// Knots of degree 1 to 6 with uneven spans (1 : 1000) and multiplicities up to `most(p)`.
 fn knots(most: fn(usize) -> usize) -> impl Strategy<Value = KnotVector> {
-    (1_usize..=6, prop::collection::vec((-3.0..0.0_f64, 1_usize..=7), 1..6), any::<bool>(), -1.0..1.0_f64).prop_map(
-        move |(degree, spans, clamped, start)| {
+    (1_usize..=6, prop::collection::vec((-3.0..0.0_f64, 1_usize..=7), 1..6), any::<bool>(), -1.0..1.0_f64)
+        .prop_map(move |(degree, spans, clamped, start)| {
             let mut at = start;
             let mut all = Vec::new();
             if clamped {
@@ -27,8 +27,7 @@ fn knots(most: fn(usize) -> usize) -> impl Strategy<Value = KnotVector> {
             }
             all.extend((0..=degree).map(|i| if clamped { at } else { at + 0.2 * i as f64 }));
             KnotVector::new(degree, all).unwrap()
-        },
-    )
+        })
 }
 
 fn smooth_knots() -> impl Strategy<Value = KnotVector> {
@@ -38,22 +37,26 @@ fn smooth_knots() -> impl Strategy<Value = KnotVector> {
 fn curve() -> impl Strategy<Value = NurbsCurve3> {
     knots(|p| p + 1).prop_flat_map(|k| {
         let n = k.n_basis();
-        prop::collection::vec((-1.0..1.0_f64, -1.0..1.0_f64, -1.0..1.0_f64, 0.3..3.0_f64), n).prop_map(move |raw| {
-            let points: Vec<_> = raw.iter().map(|p| Point3::new(p.0, p.1, p.2)).collect();
-            let weights: Vec<_> = raw.iter().map(|p| p.3).collect();
-            NurbsCurve3::from_points(k.clone(), &points, Some(&weights)).unwrap()
-        })
+        prop::collection::vec((-1.0..1.0_f64, -1.0..1.0_f64, -1.0..1.0_f64, 0.3..3.0_f64), n).prop_map(
+            move |raw| {
+                let points: Vec<_> = raw.iter().map(|p| Point3::new(p.0, p.1, p.2)).collect();
+                let weights: Vec<_> = raw.iter().map(|p| p.3).collect();
+                NurbsCurve3::from_points(k.clone(), &points, Some(&weights)).unwrap()
+            },
+        )
     })
 }
 
 fn surface() -> impl Strategy<Value = NurbsSurface> {
     (smooth_knots(), smooth_knots()).prop_flat_map(|(ku, kv)| {
         let n = ku.n_basis() * kv.n_basis();
-        prop::collection::vec((-1.0..1.0_f64, -1.0..1.0_f64, -1.0..1.0_f64, 0.3..3.0_f64), n).prop_map(move |raw| {
-            let points: Vec<_> = raw.iter().map(|p| Point3::new(p.0, p.1, p.2)).collect();
-            let weights: Vec<_> = raw.iter().map(|p| p.3).collect();
-            NurbsSurface::from_points(ku.clone(), kv.clone(), &points, Some(&weights)).unwrap()
-        })
+        prop::collection::vec((-1.0..1.0_f64, -1.0..1.0_f64, -1.0..1.0_f64, 0.3..3.0_f64), n).prop_map(
+            move |raw| {
+                let points: Vec<_> = raw.iter().map(|p| Point3::new(p.0, p.1, p.2)).collect();
+                let weights: Vec<_> = raw.iter().map(|p| p.3).collect();
+                NurbsSurface::from_points(ku.clone(), kv.clone(), &points, Some(&weights)).unwrap()
+            },
+        )
     })
 }
 

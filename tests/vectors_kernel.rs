@@ -28,8 +28,13 @@ fn surface(value: &Value) -> NurbsSurface {
         })
         .collect();
     let weights = numbers(&value["weights"]);
-    NurbsSurface::from_points(knots(degree[0], "knots_u"), knots(degree[1], "knots_v"), &points, Some(&weights))
-        .unwrap()
+    NurbsSurface::from_points(
+        knots(degree[0], "knots_u"),
+        knots(degree[1], "knots_v"),
+        &points,
+        Some(&weights),
+    )
+    .unwrap()
 }
 
 fn assert_same(found: &NurbsSurface, expected: &NurbsSurface, tolerance: f64) {

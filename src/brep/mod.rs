@@ -3,11 +3,17 @@
 //! Read-only once built. Knows nothing of files: where an element came from is the model's knowledge.
 //! Repairs nothing; `check` states facts.
 
+pub mod edge_samples;
 pub mod id;
+pub mod parameter_loop;
 
 use crate::geometry::{Carried, Curve, Curve2d, Surface};
 use crate::math::Point3;
+pub use edge_samples::{EdgePoint, EdgeRange, EdgeSampling, edge_range, sample_edge};
 pub use id::{Arena, BodyId, CoedgeId, CurveId, EdgeId, FaceId, LoopId, ShellId, SurfaceId, VertexId};
+pub use parameter_loop::{
+    LoopPoint, LoopSampling, ParameterLoop, ParameterLoopError, parameter_loops, parameter_loops_with,
+};
 
 /// All topology and geometry of one model.
 #[derive(Debug, Clone, Default)]

@@ -5,12 +5,18 @@
 
 pub mod curve;
 pub mod curve2d;
+mod evaluate_curve;
+mod evaluate_surface;
 pub mod nurbs;
+pub mod parameters;
 pub mod surface;
+pub mod transform;
 
 pub use curve::Curve;
 pub use curve2d::Curve2d;
+pub use nurbs::SurfaceDerivatives;
 pub use surface::Surface;
+pub use transform::{NotRepresentable, ParameterMap};
 
 /// Geometry that was read, or the entity name of geometry that is only carried.
 ///

@@ -229,6 +229,13 @@ impl<'a> Instance<'a> {
         }
     }
 
+    /// What stands between `=` (and the scope, if any) and `;`.
+    #[must_use]
+    pub fn body_span(&self) -> Span {
+        let (start, end) = self.body();
+        syntax::span(start, end)
+    }
+
     /// Whether it is written in external mapping, as `(A(…)B(…))`.
     #[must_use]
     pub fn is_complex(&self) -> bool {

@@ -83,7 +83,8 @@ impl ReverseIndex {
     }
 }
 
-fn anchored(structure: &ExchangeStructure) -> BTreeSet<u32> {
+/// Positions of the instances that anchors export.
+pub(super) fn anchored(structure: &ExchangeStructure) -> BTreeSet<u32> {
     let names = structure.anchors().flat_map(|(_, item)| References { bytes: item, at: 0 });
     names.filter_map(|(name, _)| structure.position(name)).collect()
 }

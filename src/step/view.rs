@@ -15,6 +15,8 @@ use crate::source::Span;
 pub struct EntityView<'a> {
     instance: Instance<'a>,
     entity: Entity,
+    /// What stands between the parentheses of a simple instance; `None` for a complex one.
+    simple: Option<Span>,
 }
 
 /// An attribute is not what the schema says.
@@ -35,9 +37,8 @@ impl<'a> EntityView<'a> {
     /// A complex instance counts as the deepest of its partial types: the first of several.
     #[must_use]
     pub fn of(instance: Instance<'a>) -> Option<Self> {
-        if !instance.is_complex() {
-            let entity = schema::classify(instance.keyword()?)?;
-            return Some(Self { instance, entity });
+        if let Some((keyword, inside)) = simple_parts(instance) {
+            return Some(Self { instance, entity: schema::classify(keyword)?, simple: Some(inside) });
         }
         let mut deepest: Option<Entity> = None;
         for record in instance.records() {
@@ -47,7 +48,7 @@ impl<'a> EntityView<'a> {
                 deepest = Some(entity);
             }
         }
-        Some(Self { instance, entity: deepest? })
+        Some(Self { instance, entity: deepest?, simple: None })
     }
 
     /// The instance.
@@ -72,7 +73,7 @@ impl<'a> EntityView<'a> {
     #[must_use]
     pub fn is(&self, entity: Entity) -> bool {
         schema::is_a(self.entity, entity)
-            || self.instance.is_complex()
+            || self.simple.is_none()
                 && self
                     .instance
                     .records()
@@ -96,8 +97,14 @@ impl<'a> EntityView<'a> {
     /// Where the value of an attribute stands in the file.
     #[must_use]
     pub fn attribute_span(&self, attribute: &str) -> Option<Span> {
+        self.get_with_span(attribute).map(|(_, span)| span)
+    }
+
+    /// One attribute with the place of its value.
+    #[must_use]
+    pub fn get_with_span(&self, attribute: &str) -> Option<(Parameter<'a>, Span)> {
         let [found] = self.fields_with_spans([attribute]);
-        found.map(|(_, span)| span)
+        found
     }
 
     fn fields_with_spans<const N: usize>(&self, names: [&str; N]) -> [Option<(Parameter<'a>, Span)>; N] {
@@ -115,10 +122,12 @@ impl<'a> EntityView<'a> {
                 }
             }
         };
+        if let Some(inside) = self.simple {
+            take(schema::attributes(self.entity), Parameters::new(self.instance.bytes(), inside));
+            return found;
+        }
         for record in self.instance.records() {
-            if !self.instance.is_complex() {
-                take(schema::attributes(self.entity), record.parameters());
-            } else if let Some(partial) = schema::classify(record.keyword()) {
+            if let Some(partial) = schema::classify(record.keyword()) {
                 take(&schema::row(partial).own, record.parameters());
             }
         }
@@ -152,8 +161,7 @@ impl<'a> EntityView<'a> {
     /// # Errors
     /// [`AttributeError`] when the attribute is missing or neither `.T.` nor `.F.`.
     pub fn boolean(&self, attribute: &'static str) -> Result<bool, AttributeError> {
-        let found = self.get(attribute);
-        found.as_ref().and_then(Parameter::as_bool).ok_or_else(|| wrong(found, attribute, "`.T.` or `.F.`"))
+        boolean(self.get(attribute), attribute)
     }
 
     /// A required list.
@@ -191,6 +199,14 @@ pub fn reference(
     attribute: &'static str,
 ) -> Result<InstanceName, AttributeError> {
     field.as_ref().and_then(Parameter::as_reference).ok_or_else(|| wrong(field, attribute, "a reference"))
+}
+
+/// A field as a boolean.
+///
+/// # Errors
+/// [`AttributeError`] when it is missing or neither `.T.` nor `.F.`.
+pub fn boolean(field: Option<Parameter<'_>>, attribute: &'static str) -> Result<bool, AttributeError> {
+    field.as_ref().and_then(Parameter::as_bool).ok_or_else(|| wrong(field, attribute, "`.T.` or `.F.`"))
 }
 
 /// A field as a finite number.
@@ -237,4 +253,39 @@ fn wrong(field: Option<Parameter<'_>>, attribute: &'static str, expected: &'stat
         Some(_) => "something else",
     };
     AttributeError { attribute, found, expected }
+}
+
+/// Keyword of a simple instance and what stands between its parentheses.
+///
+/// Looks for no closing parenthesis but the last one, so that a long record is not read only to find its
+/// end: what stands between is for the cursor to judge.
+pub(super) fn simple_parts(instance: Instance<'_>) -> Option<(&[u8], Span)> {
+    let bytes = instance.bytes();
+    let (start, end) = instance.body();
+    let body = bytes.get(start..end)?;
+    let length = body.iter().position(|&byte| !(byte.is_ascii_alphanumeric() || byte == b'_'))?;
+    let open = length + usize::from(body[length] != b'(') * trivia(&body[length..]);
+    let close = body.len().checked_sub(1)?;
+    if length == 0 || body.get(open) != Some(&b'(') || body[close] != b')' || open >= close {
+        // Complex, user-defined, or damaged: the careful way.
+        return careful_parts(instance);
+    }
+    let inside = Span::new(to_offset(start + open + 1)?, to_offset(start + close)?);
+    Some((&body[..length], inside))
+}
+
+fn trivia(bytes: &[u8]) -> usize {
+    super::syntax::trivia_end(bytes, 0)
+}
+
+fn to_offset(at: usize) -> Option<u32> {
+    u32::try_from(at).ok()
+}
+
+fn careful_parts(instance: Instance<'_>) -> Option<(&[u8], Span)> {
+    if instance.is_complex() {
+        return None;
+    }
+    let record = instance.records().next()?;
+    Some((record.keyword(), record.parameters_span()))
 }

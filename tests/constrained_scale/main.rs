@@ -4,7 +4,9 @@
 
 mod errors;
 mod invariants;
+mod models;
 mod panels;
 mod parts;
+mod plan;
 mod thin_solid;
 mod vectors;

@@ -21,7 +21,7 @@ pub use evaluate::SurfaceDerivatives;
 pub use gram::gram;
 pub use interpolate::{GrevilleCollocation, interpolate_grid};
 pub use knot_vector::{KnotVector, KnotVectorError};
-pub use project::{CurveProjection, SurfaceLocator, SurfaceProjection, Wrap};
+pub use project::{CurveProjection, SearchRange, SurfaceLocator, SurfaceProjection, Wrap, foot_point};
 pub use surface::NurbsSurface;
 
 /// The net does not fit the knots, or a weight is not a positive number.

@@ -7,7 +7,7 @@
 
 use super::evaluate::SurfaceDerivatives;
 use super::{KnotVector, NurbsCurve3, NurbsSurface};
-use crate::math::{BoundingBox, Point3};
+use crate::math::{BoundingBox, Point3, Vector3};
 
 /// A closest point on a curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,8 +52,8 @@ const STEP_END: f64 = 4.0 * f64::EPSILON;
 const COSINE_END: f64 = 1e-15;
 /// Part of the domain that one step may cross: keeps a wild first step from leaving the basin.
 const MAX_PART: f64 = 0.25;
-/// Rise of the squared distance, relative, that counts as rounding and not as uphill.
-const RISE: f64 = 1e-14;
+/// Rounding errors of a coordinate, in units of its last place, below which a change of distance says nothing.
+const NOISE: f64 = 16.0 * f64::EPSILON;
 
 impl NurbsCurve3 {
     /// The foot point reached from a seed: a local minimum of the distance over the domain.
@@ -85,13 +85,18 @@ impl NurbsCurve3 {
                 let next = (t + step).clamp(start, end);
                 let trial = self.derivatives(next);
                 let trial_square = (trial[0] - target.coords).norm_squared();
-                if trial_square <= square * (1.0 + RISE) {
-                    moved = next != t && trial_square < square;
+                let slack = 2.0 * square.sqrt() * NOISE * magnitude(target, &now[0]);
+                if trial_square <= square + slack {
+                    // Near the foot the distance is flat to rounding: there the slope tells what is nearer.
+                    let tangential =
+                        |d: &[Vector3<f64>; 3]| d[1].dot(&(d[0] - target.coords)).abs() / d[1].norm();
+                    let nearer =
+                        trial_square < square - slack || tangential(&trial) < tangential(&now);
                     let length = (trial[0] - now[0]).norm();
-                    if moved {
+                    if nearer {
                         (t, now, square) = (next, trial, trial_square);
                     }
-                    moved &= length > STEP_END * magnitude(target, &now[0]);
+                    moved = nearer && length > STEP_END * magnitude(target, &now[0]);
                     break;
                 }
                 step *= 0.5;
@@ -133,7 +138,7 @@ impl NurbsCurve3 {
 }
 
 /// Greatest absolute coordinate in play, for steps relative to rounding.
-fn magnitude(target: &Point3<f64>, point: &crate::math::Vector3<f64>) -> f64 {
+fn magnitude(target: &Point3<f64>, point: &Vector3<f64>) -> f64 {
     target.coords.amax().max(point.amax())
 }
 
@@ -144,6 +149,17 @@ fn samples_of(knots: &KnotVector, k: usize) -> impl Iterator<Item = f64> + use<>
     (0..count).map(move |i| low + (high - low) * ((i as f64 + 0.5) / count as f64))
 }
 
+/// The rectangle of parameters that a search keeps to; sides may be infinite.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SearchRange {
+    /// First and last `u`.
+    pub u: (f64, f64),
+    /// First and last `v`.
+    pub v: (f64, f64),
+    /// Directions in which the ends of the range are the same place.
+    pub wrap: Wrap,
+}
+
 /// Where a search on a surface stands.
 struct Stand {
     u: f64,
@@ -152,65 +168,95 @@ struct Stand {
     square: f64,
 }
 
+impl Stand {
+    /// Part of the residual along the tangents.
+    fn tangential(&self, target: &Point3<f64>) -> f64 {
+        let r = self.at.point - target;
+        let along = |d: &Vector3<f64>| {
+            let norm = d.norm();
+            if norm > 0.0 { d.dot(&r).abs() / norm } else { 0.0 }
+        };
+        along(&self.at.du) + along(&self.at.dv)
+    }
+}
+
+/// The foot point on any surface that `evaluate` describes, reached from a seed: a local minimum of the
+/// distance over the range.
+pub fn foot_point(
+    evaluate: &impl Fn(f64, f64) -> SurfaceDerivatives,
+    range: &SearchRange,
+    target: &Point3<f64>,
+    seed: (f64, f64),
+) -> SurfaceProjection {
+    let stand = |u: f64, v: f64| {
+        let (u, v) = (place_in(range.u, u, range.wrap.u), place_in(range.v, v, range.wrap.v));
+        let at = evaluate(u, v);
+        Stand { u, v, at, square: (at.point - target).norm_squared() }
+    };
+    let mut now = stand(seed.0, seed.1);
+    for _ in 0..MAX_STEPS {
+        let Some((mut du, mut dv)) = downhill(&now, target, range) else { break };
+        let mut moved = false;
+        for _ in 0..MAX_HALVINGS {
+            let trial = stand(now.u + du, now.v + dv);
+            let slack = 2.0 * now.square.sqrt() * NOISE * magnitude(target, &now.at.point.coords);
+            if trial.square <= now.square + slack {
+                let length = (trial.at.point - now.at.point).norm();
+                // Near the foot the distance is flat to rounding: there the slope tells what is nearer.
+                let closer = trial.square < now.square - slack
+                    || trial.tangential(target) < now.tangential(target);
+                let end = STEP_END * magnitude(target, &trial.at.point.coords);
+                if closer {
+                    now = trial;
+                }
+                moved = closer && length > end;
+                break;
+            }
+            (du, dv) = (0.5 * du, 0.5 * dv);
+        }
+        if !moved {
+            break;
+        }
+    }
+    SurfaceProjection { u: now.u, v: now.v, point: now.at.point, distance: now.square.sqrt() }
+}
+
+/// Newton's step, with parameters that are held at a bound left alone; `None` at a minimum.
+fn downhill(now: &Stand, target: &Point3<f64>, range: &SearchRange) -> Option<(f64, f64)> {
+    let at = &now.at;
+    let r = at.point - target;
+    let (gu, gv) = (at.du.dot(&r), at.dv.dot(&r));
+    let (uu, uv, vv) = (at.du.norm_squared(), at.du.dot(&at.dv), at.dv.norm_squared());
+    let distance = r.norm();
+    let held_u = held(now.u, range.u, gu, range.wrap.u);
+    let held_v = held(now.v, range.v, gv, range.wrap.v);
+    let still_u = held_u || gu.abs() <= COSINE_END * uu.sqrt() * distance;
+    let still_v = held_v || gv.abs() <= COSINE_END * vv.sqrt() * distance;
+    if still_u && still_v {
+        return None;
+    }
+    let (hu, hm, hv) = (uu + r.dot(&at.duu), uv + r.dot(&at.duv), vv + r.dot(&at.dvv));
+    let alone =
+        |g: f64, h: f64, gauss: f64| if gauss > 0.0 { -g / if h > 0.0 { h } else { gauss } } else { 0.0 };
+    let (du, dv) = match (held_u, held_v) {
+        (true, _) => (0.0, alone(gv, hv, vv)),
+        (_, true) => (alone(gu, hu, uu), 0.0),
+        _ => solve_two((hu, hm, hv), (gu, gv))
+            .or_else(|| solve_two((uu, uv, vv), (gu, gv)))
+            .unwrap_or((alone(gu, uu, uu), alone(gv, vv, vv))),
+    };
+    let part = |d: f64, (start, end): (f64, f64)| d.abs() / (MAX_PART * (end - start));
+    let part = part(du, range.u).max(part(dv, range.v));
+    let shrink = if part > 1.0 { 1.0 / part } else { 1.0 };
+    (du.is_finite() && dv.is_finite()).then_some((du * shrink, dv * shrink))
+}
+
 impl NurbsSurface {
     /// The foot point reached from a seed: a local minimum of the distance over the domain.
     #[must_use]
     pub fn closest_from(&self, target: &Point3<f64>, seed: (f64, f64), wrap: Wrap) -> SurfaceProjection {
-        let place =
-            |u: f64, v: f64| (place_in(self.knots_u(), u, wrap.u), place_in(self.knots_v(), v, wrap.v));
-        let stand = |(u, v): (f64, f64)| {
-            let at = self.derivatives(u, v);
-            Stand { u, v, at, square: (at.point - target).norm_squared() }
-        };
-        let mut now = stand(place(seed.0, seed.1));
-        for _ in 0..MAX_STEPS {
-            let Some((mut du, mut dv)) = self.downhill(&now, target, wrap) else { break };
-            let mut moved = false;
-            for _ in 0..MAX_HALVINGS {
-                let trial = stand(place(now.u + du, now.v + dv));
-                if trial.square <= now.square * (1.0 + RISE) {
-                    let length = (trial.at.point - now.at.point).norm();
-                    let closer = trial.square < now.square;
-                    let end = STEP_END * magnitude(target, &trial.at.point.coords);
-                    if closer {
-                        now = trial;
-                    }
-                    moved = closer && length > end;
-                    break;
-                }
-                (du, dv) = (0.5 * du, 0.5 * dv);
-            }
-            if !moved {
-                break;
-            }
-        }
-        SurfaceProjection { u: now.u, v: now.v, point: now.at.point, distance: now.square.sqrt() }
-    }
-
-    /// Newton's step, with parameters that are held at a bound left alone; `None` at a minimum.
-    fn downhill(&self, now: &Stand, target: &Point3<f64>, wrap: Wrap) -> Option<(f64, f64)> {
-        let at = &now.at;
-        let r = at.point - target;
-        let (gu, gv) = (at.du.dot(&r), at.dv.dot(&r));
-        let (uu, uv, vv) = (at.du.norm_squared(), at.du.dot(&at.dv), at.dv.norm_squared());
-        let ((u0, u1), (v0, v1)) = self.domain();
-        let distance = r.norm();
-        let free_u = free(now.u, (u0, u1), gu, wrap.u) && gu.abs() > COSINE_END * uu.sqrt() * distance;
-        let free_v = free(now.v, (v0, v1), gv, wrap.v) && gv.abs() > COSINE_END * vv.sqrt() * distance;
-        let (hu, hm, hv) = (uu + r.dot(&at.duu), uv + r.dot(&at.duv), vv + r.dot(&at.dvv));
-        let held_u = !free(now.u, (u0, u1), gu, wrap.u);
-        let held_v = !free(now.v, (v0, v1), gv, wrap.v);
-        let (du, dv) = match (held_u, held_v) {
-            _ if !free_u && !free_v => return None,
-            (true, _) => (0.0, -gv / if hv > 0.0 { hv } else { vv }),
-            (_, true) => (-gu / if hu > 0.0 { hu } else { uu }, 0.0),
-            _ => solve_two((hu, hm, hv), (gu, gv))
-                .or_else(|| solve_two((uu, uv, vv), (gu, gv)))
-                .unwrap_or((if uu > 0.0 { -gu / uu } else { 0.0 }, if vv > 0.0 { -gv / vv } else { 0.0 })),
-        };
-        let part = (du.abs() / (MAX_PART * (u1 - u0))).max(dv.abs() / (MAX_PART * (v1 - v0)));
-        let shrink = if part > 1.0 { 1.0 / part } else { 1.0 };
-        (du.is_finite() && dv.is_finite()).then_some((du * shrink, dv * shrink))
+        let (u, v) = self.domain();
+        foot_point(&|u, v| self.derivatives(u, v), &SearchRange { u, v, wrap }, target, seed)
     }
 }
 
@@ -224,17 +270,16 @@ fn solve_two(h: (f64, f64, f64), g: (f64, f64)) -> Option<(f64, f64)> {
     definite.then(|| (-(h.2 * g.0 - h.1 * g.1) / det, -(h.0 * g.1 - h.1 * g.0) / det))
 }
 
-/// Whether a parameter may follow the descent: not at a bound that the descent points out of.
-fn free(x: f64, (start, end): (f64, f64), slope: f64, wraps: bool) -> bool {
-    wraps || !((x <= start && slope > 0.0) || (x >= end && slope < 0.0))
+/// Whether a parameter sits at a bound that the descent points out of.
+fn held(x: f64, (start, end): (f64, f64), slope: f64, wraps: bool) -> bool {
+    !wraps && ((x <= start && slope > 0.0) || (x >= end && slope < 0.0))
 }
 
-fn place_in(knots: &KnotVector, x: f64, wraps: bool) -> f64 {
-    let (start, end) = knots.domain();
+fn place_in((start, end): (f64, f64), x: f64, wraps: bool) -> f64 {
     if x.is_nan() {
-        start
-    } else if wraps {
-        knots.wrapped(x)
+        if start.is_finite() { start } else { 0.0 }
+    } else if wraps && !(x >= start && x <= end) {
+        (start + (x - start).rem_euclid(end - start)).clamp(start, end)
     } else {
         x.clamp(start, end)
     }

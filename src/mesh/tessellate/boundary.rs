@@ -1,105 +1,90 @@
 //! Loops of a face as polygons in the parameter plane, over the shared points of the edges.
 
-use super::TessellateError;
-use super::edges::Sample;
 use super::region::Corner;
-use crate::brep::{Brep, EdgeId, FaceId, LoopId};
-use crate::geometry::Surface;
+use super::{TessellateError, Tolerances};
+use crate::brep::{
+    Brep, EdgeId, EdgePoint, FaceId, LoopPoint, LoopSampling, ParameterLoop, parameter_loops_with,
+};
 use std::collections::BTreeMap;
 
-/// Samples of an edge with their vertices in the mesh, from the edge's start to its end.
-pub(super) type SharedEdge = Vec<(Sample, u32)>;
+/// Samples of an edge from its start to its end, and their vertices in the mesh.
+#[derive(Debug, Clone)]
+pub(super) struct SharedEdge {
+    pub samples: Vec<EdgePoint>,
+    pub vertices: Vec<u32>,
+}
 
-/// Share of a period by which a loop may fail to close in the parameter plane and still count as closed.
-const CLOSING: f64 = 1e-3;
+/// Share of the chord tolerance within which a pcurve must agree with its edge to be followed, and a
+/// parameter line counts as a pole.
+const AGREEMENT: f64 = 0.1;
 
-/// Loops of a face in one sheet of the parameter plane.
+/// Loops of a face in one sheet of the parameter plane; a loop that is a vertex alone has no corner.
 pub(super) fn loops(
     brep: &Brep,
     face: FaceId,
-    surface: &Surface,
+    tolerances: &Tolerances,
     edges: &BTreeMap<EdgeId, SharedEdge>,
 ) -> Result<Vec<Vec<Corner>>, TessellateError> {
-    let mut loops = Vec::new();
-    for &bound in &brep.faces[face].loops {
-        let corners = corners(brep, bound, surface, edges);
-        if !corners.is_empty() {
-            loops.push(close(corners, surface).ok_or(TessellateError::WindingLoop { face })?);
+    let sampling = LoopSampling::of_tolerance(AGREEMENT * tolerances.chord);
+    let samples = |edge: EdgeId| edges.get(&edge).map(|shared| shared.samples.clone());
+    let found = parameter_loops_with(brep, face, &sampling, &samples)
+        .map_err(|source| TessellateError::Bounds { face, source })?;
+    let corners =
+        |l: &ParameterLoop| l.points.iter().map(|p| corner(brep, p, edges)).collect::<Option<Vec<_>>>();
+    let mut loops = Vec::with_capacity(found.len());
+    let mut winding = Vec::new();
+    for parameter_loop in &found {
+        let corners = corners(parameter_loop).expect("the points are samples of the edges that were given");
+        let turns = [parameter_loop.winding.0, parameter_loop.winding.1];
+        if turns == [0.0; 2] {
+            loops.push(corners);
+        } else {
+            winding.push((corners, turns));
         }
     }
-    gather(&mut loops, surface);
+    loops.retain(|corners| !corners.is_empty());
+    if !winding.is_empty() {
+        loops.push(band(winding).ok_or(TessellateError::WindingBounds { face })?);
+    }
     Ok(loops)
 }
 
-/// Points of a loop in order, each parameter near the one before; the last is the first again, perhaps some
-/// periods further.
-fn corners(brep: &Brep, bound: LoopId, surface: &Surface, edges: &BTreeMap<EdgeId, SharedEdge>) -> Vec<Corner> {
-    let mut points = Vec::new();
-    for &coedge in &brep.loops[bound].coedges {
-        let coedge = &brep.coedges[coedge];
-        let Some(shared) = edges.get(&coedge.edge) else { continue };
-        let kept = points.len();
-        if coedge.forward {
-            points.extend(shared.iter().map(|((_, point), vertex)| (*point, *vertex)));
-        } else {
-            points.extend(shared.iter().rev().map(|((_, point), vertex)| (*point, *vertex)));
-        }
-        // The end of each edge is the start of the next.
-        if points.len() > kept + 1 || kept > 0 {
-            points.pop();
-        }
-    }
-    points.extend(points.first().copied());
-    let mut seed = None;
-    let mut corners = Vec::with_capacity(points.len());
-    for (point, vertex) in points {
-        let near = surface.parameters_of(&point, seed);
-        let uv = seed.map_or(near, |seed| near_seed(near, seed, surface));
-        seed = Some(uv);
-        corners.push(Corner { uv: [uv.0, uv.1], vertex, point });
-    }
-    corners
+/// The corner of a loop's point: the sample of its edge with the same parameter knows the vertex.
+fn corner(brep: &Brep, at: &LoopPoint, edges: &BTreeMap<EdgeId, SharedEdge>) -> Option<Corner> {
+    let shared = edges.get(&brep.coedges[at.coedge].edge)?;
+    let index = shared.samples.iter().position(|sample| sample.t.to_bits() == at.t.to_bits())?;
+    Some(Corner { uv: [at.u, at.v], vertex: shared.vertices[index], point: shared.samples[index].point })
 }
 
-/// Parameters moved by whole periods to those closest to a seed.
-fn near_seed(at: (f64, f64), seed: (f64, f64), surface: &Surface) -> (f64, f64) {
-    let moved = |at: f64, seed: f64, period: Option<f64>| {
-        period.map_or(at, |period| at + ((seed - at) / period).round() * period)
-    };
-    let (u, v) = surface.periods();
-    (moved(at.0, seed.0, u), moved(at.1, seed.1, v))
-}
-
-/// Drops the repeated last point; `None` when the loop winds around the surface and so encloses no region of
-/// the plane.
-fn close(mut corners: Vec<Corner>, surface: &Surface) -> Option<Vec<Corner>> {
-    let (first, last) = (*corners.first()?, corners.pop()?);
-    let periods = [surface.periods().0, surface.periods().1];
-    let winds = (0..2).any(|k| periods[k].is_some_and(|p| (last.uv[k] - first.uv[k]).abs() > CLOSING * p));
-    (!winds).then_some(corners)
-}
-
-/// Moves inner loops by whole periods into the box of the greatest one.
-fn gather(loops: &mut [Vec<Corner>], surface: &Surface) {
-    let bounds = |corners: &[Corner], k: usize| {
-        let all = corners.iter().map(|c| c.uv[k]);
-        all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), c| (low.min(c), high.max(c)))
-    };
-    let size = |corners: &[Corner]| {
-        let [u, v] = [bounds(corners, 0), bounds(corners, 1)];
-        (u.1 - u.0) * (v.1 - v.0)
-    };
-    let greatest = (0..loops.len()).max_by(|&a, &b| size(&loops[a]).total_cmp(&size(&loops[b])));
-    let Some(greatest) = greatest else { return };
-    for (k, period) in [surface.periods().0, surface.periods().1].into_iter().enumerate() {
-        let Some(period) = period else { continue };
-        let (low, high) = bounds(&loops[greatest], k);
-        for corners in loops.iter_mut() {
-            let (own_low, own_high) = bounds(corners, k);
-            let turns = (0.5 * (low + high) - 0.5 * (own_low + own_high)) / period;
-            for corner in corners {
-                corner.uv[k] += turns.round() * period;
-            }
-        }
+/// The region between two loops that wind once around in opposite senses, as one polygon cut open along a
+/// straight line of the parameter plane between two of their vertices.
+///
+/// The cut's chord lies in both its sides, so it needs no points of its own where the surface is straight
+/// along it; it is left to lie off a surface that bends.
+fn band(mut winding: Vec<(Vec<Corner>, [f64; 2])>) -> Option<Vec<Corner>> {
+    let ((second, back), (first, turns)) = (winding.pop()?, winding.pop()?);
+    let opposite = (0..2).all(|k| (turns[k] + back[k]).abs() <= 1e-9 * turns[k].abs());
+    if !winding.is_empty() || !opposite {
+        return None;
     }
+    let moved = |corner: &Corner, by: [f64; 2]| Corner {
+        uv: [corner.uv[0] + by[0], corner.uv[1] + by[1]],
+        ..*corner
+    };
+    let end = moved(first.first()?, turns);
+    // The second loop starts at the corner that is closest to the first one's end, whole turns aside.
+    let along = usize::from(turns[1].abs() > turns[0].abs());
+    let turn = turns[along];
+    let offset = |corner: &Corner| {
+        let away = (corner.uv[along] - end.uv[along]) / turn;
+        (away - away.round()).abs()
+    };
+    let start = (0..second.len()).min_by(|&a, &b| offset(&second[a]).total_cmp(&offset(&second[b])))?;
+    let shift = ((end.uv[along] - second[start].uv[along]) / turn).round();
+    let by = |turns_more: f64| turns.map(|t| t * turns_more);
+    let mut polygon = first;
+    polygon.push(end);
+    polygon.extend(second[start..].iter().map(|corner| moved(corner, by(shift))));
+    polygon.extend(second[..=start].iter().map(|corner| moved(corner, by(shift - 1.0))));
+    Some(polygon)
 }

@@ -14,7 +14,7 @@ mod lattice;
 mod region;
 
 use super::Mesh;
-use crate::brep::{BodyId, Brep, EdgeId, FaceId, VertexId};
+use crate::brep::{BodyId, Brep, EdgeId, FaceId, ParameterLoopError, VertexId};
 use crate::geometry::{Carried, Curve, Surface};
 use crate::math::{Point3, Vector3};
 use boundary::SharedEdge;
@@ -82,9 +82,17 @@ pub enum TessellateError {
         /// The edge.
         edge: EdgeId,
     },
-    /// A loop winds around a closed surface, so that it encloses no region of the parameter plane.
-    #[error("a bound winds around a closed surface without a seam, which is not tessellated yet")]
-    WindingLoop {
+    /// The bounds of a face have no parameters on its surface.
+    #[error("bounds of a face: {source}")]
+    Bounds {
+        /// The face.
+        face: FaceId,
+        /// Why.
+        source: ParameterLoopError,
+    },
+    /// Bounds wind around a closed surface and are not two of opposite sense.
+    #[error("bounds wind around a closed surface and do not enclose a band of it")]
+    WindingBounds {
         /// The face.
         face: FaceId,
     },
@@ -117,10 +125,13 @@ impl TessellateError {
     pub fn face(&self) -> Option<FaceId> {
         match self {
             Self::Surface { face, .. }
-            | Self::WindingLoop { face }
+            | Self::Bounds { face, .. }
+            | Self::WindingBounds { face }
             | Self::DegenerateFace { face, .. }
             | Self::CrossingBounds { face, .. } => Some(*face),
-            Self::Tolerances { .. } | Self::Curve { .. } | Self::EdgeRange { .. } | Self::TooManyVertices => None,
+            Self::Tolerances { .. } | Self::Curve { .. } | Self::EdgeRange { .. } | Self::TooManyVertices => {
+                None
+            }
         }
     }
 
@@ -159,7 +170,11 @@ const ATTEMPTS: usize = 3;
 ///
 /// # Errors
 /// As [`tessellate_faces`].
-pub fn tessellate_bodies(brep: &Brep, bodies: &[BodyId], tolerances: &Tolerances) -> Result<Mesh, TessellateError> {
+pub fn tessellate_bodies(
+    brep: &Brep,
+    bodies: &[BodyId],
+    tolerances: &Tolerances,
+) -> Result<Mesh, TessellateError> {
     let shells = bodies.iter().flat_map(|&body| brep.bodies[body].shells.iter());
     let faces: Vec<FaceId> = shells.flat_map(|&shell| brep.shells[shell].faces.iter().copied()).collect();
     tessellate_faces(brep, &faces, tolerances)
@@ -172,7 +187,11 @@ pub fn tessellate_bodies(brep: &Brep, bodies: &[BodyId], tolerances: &Tolerances
 ///
 /// # Errors
 /// The first face or edge that cannot be tessellated, and why.
-pub fn tessellate_faces(brep: &Brep, faces: &[FaceId], tolerances: &Tolerances) -> Result<Mesh, TessellateError> {
+pub fn tessellate_faces(
+    brep: &Brep,
+    faces: &[FaceId],
+    tolerances: &Tolerances,
+) -> Result<Mesh, TessellateError> {
     let Tolerances { chord, angle } = *tolerances;
     if !(chord.is_finite() && chord > 0.0 && angle.is_finite() && angle > 0.0) {
         return Err(TessellateError::Tolerances { chord, angle });
@@ -195,14 +214,15 @@ fn attempt(
     tolerances: &Tolerances,
     edge_tolerances: &Tolerances,
 ) -> Result<Mesh, TessellateError> {
-    let mut builder = Builder { brep, mesh: Mesh::default(), vertices: BTreeMap::new(), edges: BTreeMap::new() };
+    let mut builder =
+        Builder { brep, mesh: Mesh::default(), vertices: BTreeMap::new(), edges: BTreeMap::new() };
     for &face in faces {
         let carried = brep.surface_of(face);
         let surface = carried.read().ok_or_else(|| TessellateError::surface(face, carried))?;
         for coedge in brep.coedges_of(face) {
             builder.add_edge(brep.coedges[coedge].edge, edge_tolerances)?;
         }
-        let loops = boundary::loops(brep, face, surface, &builder.edges)?;
+        let loops = boundary::loops(brep, face, tolerances, &builder.edges)?;
         let budget = Tolerances::MOST_VERTICES.saturating_sub(builder.mesh.vertices.len());
         let domain = Wrapped::of(surface);
         let evaluate = |u: f64, v: f64| domain.derivatives(u, v);
@@ -277,16 +297,16 @@ impl Builder<'_> {
         }
         let samples = edges::divide(self.brep, edge, tolerances)?;
         let last = samples.len() - 1;
-        let mut shared = Vec::with_capacity(samples.len());
-        for (at, sample) in samples.into_iter().enumerate() {
+        let mut vertices = Vec::with_capacity(samples.len());
+        for (at, sample) in samples.iter().enumerate() {
             let vertex = match at {
                 0 => self.vertex(self.brep.edges[edge].start)?,
                 _ if at == last => self.vertex(self.brep.edges[edge].end)?,
-                _ => self.push(sample.1)?,
+                _ => self.push(sample.point)?,
             };
-            shared.push((sample, vertex));
+            vertices.push(vertex);
         }
-        self.edges.insert(edge, shared);
+        self.edges.insert(edge, SharedEdge { samples, vertices });
         Ok(())
     }
 

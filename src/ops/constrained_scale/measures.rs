@@ -3,9 +3,9 @@
 //!
 //! Figures for the report; no decision hangs on them but that of [`rigid_deviation`].
 
-use super::faces::ScaledFace;
 use super::motion::Motion;
 use super::sampling::{closest, steps};
+use super::task::ScaledFace;
 use crate::geometry::nurbs::NurbsSurface;
 use crate::math::{Point3, Vector3};
 

@@ -5,7 +5,7 @@
 //! shape; the border is scaled plainly; the control points in between are chosen so that the surface stays as fair
 //! as the plainly scaled one.
 //!
-//! The numeric core ([`scale_faces`]) takes surfaces and polygons in their parameters. `plan` decides for a model
+//! The numeric core ([`scale_faces`]) takes surfaces and polygons in their parameters. [`plan`] decides for a model
 //! which element gets which motion, and gives a change set. Neither knows file formats; nothing is repaired.
 //!
 //! What it does not do: loops that meet the border, held loops on surfaces other than B-splines, different factors
@@ -19,16 +19,22 @@ pub mod envelope;
 pub mod error;
 pub mod faces;
 pub mod fold;
+mod grouping;
 pub mod measures;
 pub mod motion;
+pub mod plan;
 pub mod polygon;
+mod prepare;
 pub mod refine;
 pub mod sampling;
 pub mod scaling;
 pub mod slide;
 pub mod solve;
+mod stage;
+pub mod task;
 
 pub use error::ScaleError;
-pub use faces::{Contour, FaceTask, Group, HeldLoop, Scaled, ScaledFace, scale_face, scale_faces};
+pub use faces::{scale_face, scale_faces};
 pub use motion::Motion;
 pub use scaling::{Continuity, Energy, Freedom, Hold, Scaling};
+pub use task::{Contour, FaceTask, Group, HeldLoop, Scaled, ScaledFace};

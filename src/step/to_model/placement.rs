@@ -4,6 +4,7 @@ use super::error::ReadError;
 use super::scope::Scope;
 use crate::math::{Frame, Point2, Point3, Vector2, Vector3};
 use crate::step::entity::Entity;
+use crate::step::view::{real, reference, simple_parts};
 use crate::step::{InstanceName, Parameter, Parameters};
 
 /// A `CARTESIAN_POINT` in space; a missing third coordinate is an error.
@@ -42,20 +43,22 @@ pub(super) fn vector2(scope: Scope<'_>, name: InstanceName) -> Result<Vector2<f6
 
 fn vector(scope: Scope<'_>, name: InstanceName) -> Result<(InstanceName, f64), ReadError> {
     let view = scope.view_of(name, Entity::Vector)?;
-    let magnitude = view.real("magnitude")?;
+    let [orientation, magnitude] = view.fields(["orientation", "magnitude"]);
+    let magnitude = real(magnitude, "magnitude")?;
     if magnitude <= 0.0 {
         return Err(ReadError::NotPositive { attribute: "magnitude", value: magnitude });
     }
-    Ok((view.reference("orientation")?, magnitude))
+    Ok((reference(orientation, "orientation")?, magnitude))
 }
 
 /// An `AXIS2_PLACEMENT_3D`, or an `AXIS1_PLACEMENT` with an arbitrary first axis.
 pub(super) fn frame(scope: Scope<'_>, name: InstanceName) -> Result<Frame, ReadError> {
     let view = scope.view_of(name, Entity::Placement)?;
-    let origin = point3(scope, view.reference("location")?)?;
-    let axis = view.optional_reference("axis");
+    let [location, axis, first] = view.fields(["location", "axis", "ref_direction"]);
+    let origin = point3(scope, reference(location, "location")?)?;
+    let axis = axis.and_then(|axis| axis.as_reference());
     let z = axis.map_or(Ok(Vector3::z()), |axis| direction3(scope, axis))?;
-    let first = view.optional_reference("ref_direction");
+    let first = first.and_then(|first| first.as_reference());
     let x = first.map(|first| direction3(scope, first)).transpose()?;
     Frame::from_axis(origin, z, x).ok_or(ReadError::Coordinates(name))
 }
@@ -76,15 +79,15 @@ fn coordinates<const N: usize>(
     entity: Entity,
 ) -> Result<[f64; N], ReadError> {
     let instance = scope.instance(name)?;
-    let keyword = instance.keyword().unwrap_or_default();
-    if !keyword.eq_ignore_ascii_case(entity.name().as_bytes()) {
-        // A short name, a complex instance, or something else altogether.
+    let simple = simple_parts(instance).filter(|(keyword, _)| *keyword == entity.name().as_bytes());
+    let Some((_, inside)) = simple else {
+        // Lower case, a short name, a complex instance, or something else altogether.
         let view = scope.view_of(name, entity)?;
         let attribute = if entity == Entity::Direction { "direction_ratios" } else { "coordinates" };
         return numbers(scope, name, view.list(attribute)?).ok_or(ReadError::Coordinates(name));
-    }
-    let record = instance.records().next().ok_or(ReadError::Coordinates(name))?;
-    let list = record.parameters().nth(1).and_then(|parameter| parameter.as_list());
+    };
+    let mut parameters = Parameters::new(scope.file.source().bytes(), inside);
+    let list = parameters.nth(1).and_then(|parameter| parameter.as_list());
     list.and_then(|list| numbers(scope, name, list)).ok_or(ReadError::Coordinates(name))
 }
 

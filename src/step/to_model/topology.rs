@@ -21,7 +21,7 @@ use crate::geometry::{Carried, Curve, Surface};
 use crate::math::Point3;
 use crate::model::{Attributes, Origin, Origins};
 use crate::step::entity::Entity;
-use crate::step::view::{EntityView, list, reference};
+use crate::step::view::{EntityView, boolean, list, reference};
 use crate::step::{InstanceName, Parameters};
 
 /// Oriented elements around oriented elements that are followed before the chain counts as a cycle.
@@ -163,10 +163,10 @@ impl<'a, 's> Builder<'a, 's> {
         let [start, end] = view.fields(["edge_start", "edge_end"]);
         let start = self.vertex(reference(start, "edge_start")?)?;
         let end = self.vertex(reference(end, "edge_end")?)?;
-        let holder = self.edge_curve(view)?;
+        let [geometry, same_sense] = self.edge_curve(view)?.fields(["edge_geometry", "same_sense"]);
         let (curve_name, around) =
-            curve::resolve(self.scope, holder.reference("edge_geometry")?, Trims::Follow)?;
-        let same_sense = holder.boolean("same_sense")?;
+            curve::resolve(self.scope, reference(geometry, "edge_geometry")?, Trims::Follow)?;
+        let same_sense = boolean(same_sense, "same_sense")?;
         let curve = self.curve(curve_name, name);
         self.origins.edges.push(origin(name));
         let id = self.brep.edges.push(Edge { curve, start, end, same_sense });
@@ -210,12 +210,16 @@ impl<'a, 's> Builder<'a, 's> {
         let mut current = name;
         let mut forward = true;
         for _ in 0..MAX_NESTED_ORIENTATIONS {
+            if self.edges.contains_key(&current) {
+                return Ok((self.edge(current)?, forward));
+            }
             let view = self.scope.view_of(current, Entity::Edge)?;
             if !view.is(Entity::OrientedEdge) {
                 return Ok((self.edge(current)?, forward));
             }
-            forward = forward == view.boolean("orientation")?;
-            current = view.reference("edge_element")?;
+            let [element, orientation] = view.fields(["edge_element", "orientation"]);
+            forward = forward == boolean(orientation, "orientation")?;
+            current = reference(element, "edge_element")?;
         }
         Err(ReadError::Cycle(name))
     }
@@ -223,9 +227,10 @@ impl<'a, 's> Builder<'a, 's> {
     /// Reads one bound of a face. Nothing of a bound with an error is kept but its edges and vertices.
     fn bound(&mut self, name: InstanceName, face: FaceId, on: &FaceSurface) -> Result<LoopId, ReadError> {
         let view = self.scope.view_of(name, Entity::FaceBound)?;
-        let forward = view.boolean("orientation")?;
+        let [bound, orientation] = view.fields(["bound", "orientation"]);
+        let forward = boolean(orientation, "orientation")?;
         let outer = view.is(Entity::FaceOuterBound);
-        let path = self.scope.view_of(view.reference("bound")?, Entity::Loop)?;
+        let path = self.scope.view_of(reference(bound, "bound")?, Entity::Loop)?;
         let mut vertex = None;
         let uses = match path.entity() {
             Entity::VertexLoop => {
@@ -356,10 +361,10 @@ impl<'a, 's> Builder<'a, 's> {
 
     fn face_record(&self, name: InstanceName) -> Result<FaceRecord<'a>, ReadError> {
         let (view, forward) = self.underlying_face(name)?;
-        let [bounds, geometry] = view.fields(["bounds", "face_geometry"]);
+        let [bounds, geometry, same_sense] = view.fields(["bounds", "face_geometry", "same_sense"]);
         let bounds = list(bounds, "bounds")?;
         let geometry = reference(geometry, "face_geometry")?;
-        let same_sense = view.boolean("same_sense")? == forward;
+        let same_sense = boolean(same_sense, "same_sense")? == forward;
         Ok(FaceRecord { view, bounds, geometry, same_sense, forward })
     }
 
