@@ -34,10 +34,21 @@ pub struct Job {
     /// Other programs that must accept the result.
     #[serde(default)]
     pub validate: ValidateSettings,
-    /// Operations, one after the other.
-    #[serde(default)]
+    /// The operation; none passes the parts through. More than one in a job is not there yet.
+    #[serde(default, deserialize_with = "at_most_one")]
     #[schemars(length(max = 1))]
     pub operation: Vec<Operation>,
+}
+
+fn at_most_one<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Vec<Operation>, D::Error> {
+    let operations = Vec::deserialize(deserializer)?;
+    if operations.len() > 1 {
+        let count = operations.len();
+        return Err(de::Error::custom(format!(
+            "{count} operations in one job; one is what this version does"
+        )));
+    }
+    Ok(operations)
 }
 
 /// Version of the job format.
