@@ -216,7 +216,6 @@ impl<'a> Parameters<'a> {
     }
 
     /// The next parameter with its place, keyword and parentheses included.
-    #[inline]
     pub fn next_with_span(&mut self) -> Option<(Parameter<'a>, Span)> {
         // Everything behind `end` is hidden, so that no token can run over the closing parenthesis.
         let bytes = &self.bytes[..self.end as usize];
@@ -294,7 +293,6 @@ impl<'a> Parameters<'a> {
 impl<'a> Iterator for Parameters<'a> {
     type Item = Parameter<'a>;
 
-    #[inline]
     fn next(&mut self) -> Option<Self::Item> {
         self.next_with_span().map(|(parameter, _)| parameter)
     }

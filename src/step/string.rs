@@ -125,7 +125,7 @@ impl<'a> Decoder<'a> {
             Width::Four => 8,
         };
         let units: Vec<u32> = digits.chunks(size).filter_map(hexadecimal).collect();
-        self.lossy |= digits.len() % size != 0 || !body[end..].starts_with(b"\\X0\\");
+        self.lossy |= !digits.len().is_multiple_of(size) || !body[end..].starts_with(b"\\X0\\");
         match width {
             // Some writers put surrogate pairs here, though the standard means UCS-2.
             Width::Two => {

@@ -161,13 +161,20 @@ fn is_byte_order_mark(bytes: &[u8], at: usize) -> bool {
     bytes.get(at..at + 3) == Some(&[0xef, 0xbb, 0xbf])
 }
 
+/// Whether white space, a comment, a print control directive or a byte-order mark may begin with this byte.
+#[inline]
+fn may_begin_trivia(byte: u8) -> bool {
+    matches!(byte, 0..=b' ' | b'/' | b'\\' | 0x7f | 0xef)
+}
+
 /// End of white space and comments at `at`. An unclosed comment runs to the end.
 #[inline]
 pub(crate) fn trivia_end(bytes: &[u8], at: usize) -> usize {
-    // Between most tokens of most files nothing stands.
-    match bytes.get(at) {
-        // Beginnings of white space, comments, print control directives and byte-order marks.
-        Some(0..=b' ' | b'/' | b'\\' | 0x7f | 0xef) => trivia_end_slow(bytes, at),
+    // Between most tokens stands nothing or one blank.
+    match bytes.get(at..) {
+        Some([first, ..]) if !may_begin_trivia(*first) => at,
+        Some([b' ', second, ..]) if !may_begin_trivia(*second) => at + 1,
+        Some([_, ..]) => trivia_end_slow(bytes, at),
         _ => at,
     }
 }
