@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// Layer of each room, from `docs/architecture.md`. A room imports rooms of lower layers only.
 const LAYERS: [(&str, u8); 17] = [
     ("source", 0),
-    ("diagnostic", 0),
+    ("diagnostic", 1),
     ("units", 0),
     ("math", 1),
     ("geometry", 2),

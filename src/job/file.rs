@@ -339,22 +339,17 @@ pub enum Energy {
 }
 
 /// Order of continuity at the natural border.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, JsonSchema)]
 #[serde(try_from = "u64")]
 #[schemars(with = "u64", extend("enum" = [0, 1, 2]))]
 pub enum Continuity {
     /// 0.
     Position,
     /// 1.
+    #[default]
     Tangent,
     /// 2.
     Curvature,
-}
-
-impl Default for Continuity {
-    fn default() -> Self {
-        Self::Tangent
-    }
 }
 
 impl TryFrom<u64> for Continuity {

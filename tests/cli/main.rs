@@ -12,6 +12,12 @@ pub struct Fixture {
     variables: Vec<(String, String)>,
 }
 
+impl Default for Fixture {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Fixture {
     /// An empty folder.
     pub fn new() -> Self {
