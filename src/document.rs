@@ -1,1 +1,201 @@
 //! Recognises the format of a file; the one place that dispatches between formats.
+//!
+//! Holds no policy: what to do with a file that cannot be read is the caller's decision. STEP is read;
+//! everything else is recognised, so that a message can say what the file is.
+
+use crate::diagnostic::Sink;
+use crate::exchange::Patch;
+use crate::model::{ChangeSet, Model};
+use crate::source::{Source, SourceTooLarge};
+use crate::step::{self, ExchangeStructure};
+
+/// What the bytes of a file are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// ISO 10303-21 clear text.
+    Step,
+    /// IGES, fixed or compressed ASCII.
+    Iges,
+    /// A gzip stream, as `.stpZ` files are.
+    Gzip,
+    /// A zip archive, as `.stpZ` files of the CAx-IF are.
+    Zip,
+}
+
+impl Format {
+    /// Name in messages and reports.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Step => "step",
+            Self::Iges => "iges",
+            Self::Gzip => "gzip",
+            Self::Zip => "zip",
+        }
+    }
+
+    /// The format of a file by its content; the extension decides only when the content does not.
+    #[must_use]
+    pub fn recognise(bytes: &[u8], extension: &str) -> Option<Self> {
+        if bytes.starts_with(&[0x1f, 0x8b]) {
+            return Some(Self::Gzip);
+        }
+        if bytes.starts_with(b"PK\x03\x04") {
+            return Some(Self::Zip);
+        }
+        // Some writers put bytes before the first line, and OpenCASCADE's predecessors a comment.
+        let head = &bytes[..bytes.len().min(HEAD)];
+        if memchr::memmem::find(head, b"ISO-10303-21").is_some() {
+            return Some(Self::Step);
+        }
+        if is_iges(bytes) {
+            return Some(Self::Iges);
+        }
+        Self::of_extension(extension)
+    }
+
+    /// The format that an extension promises.
+    #[must_use]
+    pub fn of_extension(extension: &str) -> Option<Self> {
+        match extension.to_ascii_lowercase().as_str() {
+            "step" | "stp" | "p21" | "214" => Some(Self::Step),
+            "iges" | "igs" => Some(Self::Iges),
+            _ => None,
+        }
+    }
+}
+
+/// Bytes searched for the first line of a STEP file.
+const HEAD: usize = 4096;
+
+/// IGES: the first record has `S` (or, for the compressed and binary forms, `C` or `B`) in column 73
+/// and a sequence number behind it.
+fn is_iges(bytes: &[u8]) -> bool {
+    matches!(bytes.get(72), Some(b'S' | b'C' | b'B'))
+        && bytes
+            .get(73..80)
+            .is_some_and(|n| n.iter().all(|b| b.is_ascii_digit() || *b == b' ') && n[6] == b'1')
+}
+
+/// Why a file is not read.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum OpenError {
+    /// The format is known, and this version does not read it.
+    #[error("{} files are not read yet", .format.as_str())]
+    NotReadYet {
+        /// What the file is.
+        format: Format,
+    },
+    /// Neither the content nor the extension is known.
+    #[error("neither the content nor the extension is that of a known format")]
+    Unknown,
+    /// The file is empty.
+    #[error("the file is empty")]
+    Empty,
+    /// The file is larger than can be addressed.
+    #[error(transparent)]
+    TooLarge(#[from] SourceTooLarge),
+}
+
+impl OpenError {
+    /// The stable code.
+    #[must_use]
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NotReadYet { .. } => "document.not-read-yet",
+            Self::Unknown => "document.unknown-format",
+            Self::Empty => "document.empty",
+            Self::TooLarge(_) => "document.too-large",
+        }
+    }
+}
+
+/// One file, parsed.
+#[derive(Debug)]
+pub struct Document {
+    structure: ExchangeStructure,
+}
+
+impl Document {
+    /// Recognises and parses a file. What is wrong inside it goes to the sink.
+    ///
+    /// # Errors
+    /// [`OpenError`] when it is no file of a format that is read.
+    pub fn open(bytes: Vec<u8>, extension: &str, sink: &mut dyn Sink) -> Result<Self, OpenError> {
+        if bytes.is_empty() {
+            return Err(OpenError::Empty);
+        }
+        match Format::recognise(&bytes, extension) {
+            Some(Format::Step) => Ok(Self { structure: ExchangeStructure::parse(Source::new(bytes)?, sink) }),
+            Some(format) => Err(OpenError::NotReadYet { format }),
+            None => Err(OpenError::Unknown),
+        }
+    }
+
+    /// Name of the format.
+    #[must_use]
+    pub fn format(&self) -> Format {
+        Format::Step
+    }
+
+    /// The input bytes.
+    #[must_use]
+    pub fn source(&self) -> &Source {
+        self.structure.source()
+    }
+
+    /// What the file means.
+    pub fn model(&self, sink: &mut dyn Sink) -> Model {
+        self.structure.unresolved_references(sink);
+        step::to_model::to_model(&self.structure, sink)
+    }
+
+    /// The byte edits that carry out a change set.
+    ///
+    /// # Errors
+    /// A lower-case fragment naming the entity that cannot be written.
+    pub fn lower(&self, _model: &Model, changes: &ChangeSet, _stamp: &Stamp) -> Result<Patch, LowerError> {
+        if changes.is_empty() {
+            return Patch::new(self.source().bytes().len(), Vec::new())
+                .map_err(|e| LowerError(e.to_string()));
+        }
+        Err(LowerError("changes are not written yet".to_owned()))
+    }
+}
+
+/// What a changed file says about its writing.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Stamp {
+    /// ISO 8601 time without zone.
+    pub time: String,
+    /// Name and version of the program that wrote the file.
+    pub preprocessor: String,
+}
+
+/// A change that cannot be written in the file's format.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct LowerError(pub String);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn content_is_stronger_than_the_extension() {
+        let mut iges = vec![b' '; 72];
+        iges.extend_from_slice(b"S      1\n");
+        let cases: [(&[u8], &str, Option<Format>); 7] = [
+            (b"ISO-10303-21;\n", "igs", Some(Format::Step)),
+            (b"\xef\xbb\xbfISO-10303-21;", "", Some(Format::Step)),
+            (b"x\nISO-10303-21;", "txt", Some(Format::Step)),
+            (&iges, "stp", Some(Format::Iges)),
+            (&[0x1f, 0x8b, 8], "stpZ", Some(Format::Gzip)),
+            (b"PK\x03\x04", "stpZ", Some(Format::Zip)),
+            (b"solid cube", "stl", None),
+        ];
+        for (bytes, extension, expected) in cases {
+            assert_eq!(Format::recognise(bytes, extension), expected, "{extension}");
+        }
+    }
+}

@@ -19,6 +19,7 @@ pub mod math;
 pub mod mesh;
 pub mod model;
 pub mod ops;
+pub mod picture;
 pub mod source;
 pub mod step;
 pub mod units;

@@ -1,1 +1,47 @@
 //! Flags, colours, exit codes. The only room that prints.
+//!
+//! Data goes to standard output, everything else to standard error. A reader that closes the pipe early
+//! has got what it wanted: that is success.
+
+mod arguments;
+mod check;
+mod convert;
+pub mod exit_code;
+mod inspect;
+mod print;
+mod run;
+mod show;
+
+use clap::Parser;
+
+use arguments::{Arguments, Command, SchemaOf};
+use print::Printer;
+
+/// Runs the program with the process's arguments and gives its exit code.
+#[must_use]
+pub fn main() -> u8 {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Clap prints help to standard output with code 0, and usage errors to standard error with 2.
+            let code = if error.use_stderr() { exit_code::USAGE } else { exit_code::DONE };
+            let _ = error.print();
+            return code;
+        }
+    };
+    let mut printer = Printer::new();
+    let code = match arguments.command {
+        Command::Run(arguments) => run::run(&arguments, &mut printer),
+        Command::Convert(arguments) => convert::convert(&arguments, &mut printer),
+        Command::Inspect(arguments) => inspect::inspect(&arguments, &mut printer),
+        Command::Check(arguments) => check::check(&arguments, &mut printer),
+        Command::Schema { of } => {
+            printer.data(&match of {
+                SchemaOf::Job => crate::job::schema::job(),
+                SchemaOf::Report => crate::job::schema::report(),
+            });
+            exit_code::DONE
+        }
+    };
+    printer.code().unwrap_or(code)
+}

@@ -13,4 +13,4 @@ pub use affine::{Affine, cofactor, minimal_rotation};
 pub use bounds::BoundingBox;
 pub use frame::Frame;
 pub use nalgebra::{Matrix2, Matrix3, Point2, Point3, Vector2, Vector3, Vector4};
-pub use sprs::{CsMat, TriMat};
+pub use sprs::{CsMat, TriMat, kronecker_product};

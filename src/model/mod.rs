@@ -5,9 +5,11 @@
 //! back.
 
 pub mod change_set;
+pub mod inventory;
 pub mod origin;
 
 pub use change_set::ChangeSet;
+pub use inventory::Inventory;
 pub use origin::{Origin, Origins};
 
 use crate::brep::{Arena, BodyId, Brep, CurveId, FaceId};
@@ -125,5 +127,11 @@ impl Model {
     #[must_use]
     pub fn colour_of(&self, face: FaceId) -> Option<Colour> {
         self.faces[face].colour.or(self.bodies[self.body_of(face)].own.colour)
+    }
+
+    /// Layers of a face: its own, then those of its body.
+    pub fn layers_of(&self, face: FaceId) -> impl Iterator<Item = &str> {
+        let body = &self.bodies[self.body_of(face)].own.layers;
+        self.faces[face].layers.iter().chain(body).map(String::as_str)
     }
 }

@@ -1,1 +1,9 @@
-//! placeholder
+//! Operations: from a model and parameters to a change set.
+//!
+//! Pure: no operation knows a file format or touches a file. An operation that cannot do its job returns an
+//! [`OperationError`] and no change set.
+
+pub mod constrained_scale;
+pub mod error;
+
+pub use error::{Obstacle, OperationError};

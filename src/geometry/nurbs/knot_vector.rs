@@ -227,6 +227,14 @@ impl KnotVector {
         (values, counts)
     }
 
+    /// Distinct knots and how often each occurs, as ISO 10303-42 writes them: the inverse of
+    /// [`from_multiplicities`](Self::from_multiplicities). Only equal bits count as one knot.
+    #[must_use]
+    pub fn to_multiplicities(&self) -> (Vec<f64>, Vec<usize>) {
+        let runs = || self.knots.chunk_by(|a, b| a.to_bits() == b.to_bits());
+        (runs().map(|run| run[0]).collect(), runs().map(<[f64]>::len).collect())
+    }
+
     /// How often exactly `u` occurs.
     #[must_use]
     pub fn multiplicity(&self, u: f64) -> usize {

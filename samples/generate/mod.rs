@@ -1,0 +1,39 @@
+//! Sample parts from formulas: car panels with elliptic holes, one of them once more as a thin solid,
+//! and an assembly of two.
+//!
+//! Nothing here uses the library: a sample that the library helped to write could not tell on it. Every
+//! coordinate is rounded to [`records::DECIMALS`] decimals, so that the last bit of somebody's sine does
+//! not change a file.
+
+mod assembly;
+mod panel;
+mod records;
+mod sheet;
+mod spline;
+mod thin_solid;
+
+use panel::Panel;
+use records::Schema;
+
+/// One file of the samples.
+pub struct Sample {
+    /// Path below `samples/`.
+    pub path: &'static str,
+    /// The whole file.
+    pub text: String,
+}
+
+/// All sample parts, in order of their paths.
+pub fn all() -> Vec<Sample> {
+    let sample = |path, text| Sample { path, text };
+    vec![
+        sample("assembly/assembly.step", assembly::write(&Panel::door(), Schema::Ap214)),
+        sample("door/door-ap242.step", sheet::write(&Panel::door(), Schema::Ap242)),
+        sample("door/door.step", sheet::write(&Panel::door(), Schema::Ap214)),
+        sample("door-solid/door-solid.step", thin_solid::write(&Panel::door(), Schema::Ap242)),
+        sample("hood/hood-ap242.step", sheet::write(&Panel::hood(), Schema::Ap242)),
+        sample("hood/hood.step", sheet::write(&Panel::hood(), Schema::Ap214)),
+        sample("trunk/trunk-ap242.step", sheet::write(&Panel::trunk(), Schema::Ap242)),
+        sample("trunk/trunk.step", sheet::write(&Panel::trunk(), Schema::Ap214)),
+    ]
+}

@@ -1,0 +1,79 @@
+//! `resurf inspect`: what is inside a part.
+
+use std::fmt::Write;
+
+use super::arguments::InspectArguments;
+use super::exit_code;
+use super::print::Printer;
+use super::show;
+use crate::job::failure::PartError;
+use crate::job::inventory::{Inventory, inventory};
+use crate::job::operate::OperateError;
+use crate::job::part::Read;
+use crate::job::select;
+
+/// Inspects a part and gives the exit code.
+pub fn inspect(arguments: &InspectArguments, printer: &mut Printer) -> u8 {
+    match seen(arguments, printer) {
+        Ok(inventory) => {
+            let text = if arguments.json { json(&inventory) } else { plain(&inventory) };
+            printer.data(&text);
+            exit_code::DONE
+        }
+        Err(error) => {
+            show::part_error(printer, &arguments.part, &error);
+            error.exit_code()
+        }
+    }
+}
+
+fn seen(arguments: &InspectArguments, printer: &mut Printer) -> Result<Inventory, PartError> {
+    let mut read = Read::file(&arguments.part)?;
+    let model = read.model();
+    show::diagnostics(printer, &arguments.part, &read);
+    read.refuse_damage()?;
+    let faces = match &arguments.face {
+        Some(selector) => select::faces(&model, selector).map_err(OperateError::Face)?,
+        None if arguments.faces => model.brep.faces.ids().collect(),
+        None => Vec::new(),
+    };
+    Ok(inventory(&model, &faces))
+}
+
+fn json(inventory: &Inventory) -> String {
+    let mut text =
+        serde_json::to_string_pretty(inventory).expect("an inventory is a tree of texts and numbers");
+    text.push('\n');
+    text
+}
+
+fn plain(inventory: &Inventory) -> String {
+    let figures = &inventory.figures;
+    let mut text = String::new();
+    let mut line = |name: &str, value: String| {
+        let _ = writeln!(text, "{name:<10}{value}");
+    };
+    line("schema", figures.schema.join(", "));
+    line("units", figures.units.join(", "));
+    for (name, count) in &figures.counts {
+        line(name, count.to_string());
+    }
+    let surfaces: Vec<String> =
+        figures.surfaces.iter().map(|(kind, count)| format!("{kind} {count}")).collect();
+    line("surfaces", surfaces.join(", "));
+    if let Some([least, greatest]) = figures.vertex_extents {
+        let point = |[x, y, z]: [f64; 3]| format!("({x}, {y}, {z})");
+        line("vertices", format!("within {} to {}", point(least), point(greatest)));
+    }
+    for product in &inventory.products {
+        let used = product.used_in.join(", ");
+        let used = if used.is_empty() { String::new() } else { format!(" in {used}") };
+        line("product", format!("{} {:?}{used}", product.id, product.name));
+    }
+    for face in &inventory.faces {
+        let colour = face.colour.as_deref().unwrap_or("no colour");
+        let neighbours = face.neighbours.join(" ");
+        line("face", format!("{} {:?} {} {colour}, next to {neighbours}", face.id, face.name, face.surface));
+    }
+    text
+}

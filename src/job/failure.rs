@@ -1,0 +1,106 @@
+//! Why a part fails, and which exit code that is.
+
+use super::operate::OperateError;
+use super::output::FileError;
+use super::report::Failure;
+use crate::document::{LowerError, OpenError};
+use crate::validate::ValidateError;
+
+/// The first thing that kept a part from being written.
+#[derive(Debug, thiserror::Error)]
+pub enum PartError {
+    /// The input cannot be read from its place.
+    #[error("the input cannot be read: {0}")]
+    Input(FileError),
+    /// The input is no file of a known format.
+    #[error(transparent)]
+    Open(#[from] OpenError),
+    /// The input is damaged beyond use.
+    #[error("the input is damaged: {0}")]
+    Damaged(String),
+    /// The operation cannot be done.
+    #[error(transparent)]
+    Operate(#[from] OperateError),
+    /// The change cannot be written in this format.
+    #[error("the result cannot be written: {0}")]
+    Lower(#[from] LowerError),
+    /// The written bytes, read again, are not what was meant.
+    #[error("the result does not pass the own checks: {}", .0.join("; "))]
+    Check(Vec<String>),
+    /// A side file cannot be made.
+    #[error("the side mesh cannot be made: {0}")]
+    Mesh(String),
+    /// Another program refuses the result.
+    #[error("{program} refuses the result: {}", .messages.join("; "))]
+    Refused {
+        /// The program.
+        program: &'static str,
+        /// Its words.
+        messages: Vec<String>,
+    },
+    /// Another program gives no verdict.
+    #[error(transparent)]
+    NoVerdict(#[from] ValidateError),
+    /// The output cannot be written.
+    #[error("the output cannot be written: {0}")]
+    Output(FileError),
+}
+
+/// Exit codes of a part. The command line documents them in `cli::exit_code`.
+pub mod code {
+    /// All well.
+    pub const DONE: u8 = 0;
+    /// Ran, and failed its gate.
+    pub const GATE: u8 = 1;
+    /// Job file or usage wrong.
+    pub const USAGE: u8 = 2;
+    /// Input unreadable.
+    pub const UNREADABLE: u8 = 3;
+    /// The operation cannot be done on this part.
+    pub const OPERATION: u8 = 4;
+    /// A required validator is missing.
+    pub const VALIDATOR_MISSING: u8 = 5;
+    /// A resource ceiling was met.
+    pub const RESOURCE: u8 = 6;
+    /// Input or output failed; try again.
+    pub const IO: u8 = 7;
+    /// A bug of the program.
+    pub const INTERNAL: u8 = 70;
+}
+
+impl PartError {
+    /// The exit code.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Input(error) if error.source.kind() == std::io::ErrorKind::NotFound => code::UNREADABLE,
+            Self::Input(_) | Self::Output(_) => code::IO,
+            Self::Open(OpenError::TooLarge(_)) => code::RESOURCE,
+            Self::Open(_) | Self::Damaged(_) => code::UNREADABLE,
+            Self::Operate(error) if error.code().starts_with("internal.") => code::INTERNAL,
+            Self::Operate(_) | Self::Lower(_) | Self::Mesh(_) => code::OPERATION,
+            Self::NoVerdict(ValidateError::Missing { .. }) => code::VALIDATOR_MISSING,
+            Self::NoVerdict(ValidateError::Scratch { .. }) => code::IO,
+            Self::Check(_) | Self::Refused { .. } | Self::NoVerdict(_) => code::GATE,
+        }
+    }
+
+    /// The failure for the report.
+    #[must_use]
+    pub fn failure(&self) -> Failure {
+        let code = match self {
+            Self::Input(_) => "io.input",
+            Self::Open(error) => error.code(),
+            Self::Damaged(_) => "document.damaged",
+            Self::Operate(error) => error.code(),
+            Self::Lower(_) => "write.cannot-lower",
+            Self::Check(_) => "check.failed",
+            Self::Mesh(_) => "mesh.failed",
+            Self::Refused { .. } => "validate.refused",
+            Self::NoVerdict(ValidateError::Missing { .. }) => "validate.missing",
+            Self::NoVerdict(_) => "validate.no-verdict",
+            Self::Output(_) => "io.output",
+        };
+        Failure { code: code.to_owned(), message: self.to_string() }
+    }
+}

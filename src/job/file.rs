@@ -1,0 +1,392 @@
+//! The job file's types: what may stand in one, key by key.
+//!
+//! Only keys of things that exist are here: an unknown key is refused, so a job never believes that
+//! something happened which did not. The JSON Schema under `schemas/` is generated from these types.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+use serde::de;
+
+use super::selector::Selector;
+use crate::units::Length;
+
+/// A job: parts, an operation or several, and where the results go.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(title = "resurf job")]
+pub struct Job {
+    /// Version of the job format: 1.
+    pub version: Version,
+    /// Name of the job, for reports.
+    #[serde(default)]
+    pub name: String,
+    /// Parts: paths or globs (`*`, `?`, `[a-z]`, `{a,b}`, `**`), relative to the job file. Each match is one part.
+    #[schemars(length(min = 1))]
+    pub inputs: Vec<String>,
+    /// Where each result goes, relative to the job file; `{dir}`, `{stem}` and `{ext}` are those of the input.
+    pub output: String,
+    /// Side files beside the output: meshes for viewing and for OpenSCAD.
+    #[serde(default)]
+    pub also: Vec<SideFormat>,
+    /// Bounds on whatever must be approximated.
+    #[serde(default)]
+    pub tolerance: ToleranceSettings,
+    /// Other programs that must accept the result.
+    #[serde(default)]
+    pub validate: ValidateSettings,
+    /// Operations, one after the other.
+    #[serde(default)]
+    #[schemars(length(max = 1))]
+    pub operation: Vec<Operation>,
+}
+
+/// Version of the job format.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(try_from = "u64")]
+#[schemars(with = "u64", extend("const" = 1))]
+pub struct Version;
+
+impl TryFrom<u64> for Version {
+    type Error = String;
+    fn try_from(version: u64) -> Result<Self, String> {
+        if version == 1 {
+            Ok(Self)
+        } else {
+            Err(format!("version {version} is not known; this program reads version 1"))
+        }
+    }
+}
+
+/// A mesh format that a side file may have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum SideFormat {
+    /// Binary STL.
+    Stl,
+    /// OFF with shared vertices.
+    Off,
+}
+
+impl SideFormat {
+    /// The extension of its files.
+    #[must_use]
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Stl => "stl",
+            Self::Off => "off",
+        }
+    }
+}
+
+/// Bounds on approximation.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct ToleranceSettings {
+    /// Greatest distance between a side mesh and its part. Left out: a thousandth of the part's diagonal.
+    pub length: Option<LengthSetting>,
+}
+
+/// A length: a number in file units, or a text with a unit such as `"0.5 mm"`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LengthSetting(pub Length);
+
+impl<'de> Deserialize<'de> for LengthSetting {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct LengthVisitor;
+        impl de::Visitor<'_> for LengthVisitor {
+            type Value = LengthSetting;
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("a number in file units, or a text with a unit such as \"0.5 mm\"")
+            }
+            fn visit_i64<E: de::Error>(self, value: i64) -> Result<LengthSetting, E> {
+                self.visit_f64(value as f64)
+            }
+            fn visit_f64<E: de::Error>(self, value: f64) -> Result<LengthSetting, E> {
+                if value.is_finite() {
+                    return Ok(LengthSetting(Length::FileUnits(value)));
+                }
+                Err(E::custom(format!("{value} is not a length")))
+            }
+            fn visit_str<E: de::Error>(self, text: &str) -> Result<LengthSetting, E> {
+                text.parse().map(LengthSetting).map_err(E::custom)
+            }
+        }
+        deserializer.deserialize_any(LengthVisitor)
+    }
+}
+
+impl JsonSchema for LengthSetting {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Length".into()
+    }
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({
+            "description": "A number in file units, or a text with a unit: um, mm, cm, dm, m, in, inch, ft.",
+            "type": ["number", "string"],
+        })
+    }
+}
+
+/// Other programs that are asked about the written files.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct ValidateSettings {
+    /// Programs that are asked.
+    pub with: Vec<ValidatorName>,
+    /// Whether a missing program fails the part. Left out: false, and the report says that nobody was asked.
+    pub require: bool,
+    /// Seconds after which a program is stopped. Left out: 300.
+    pub timeout: Option<Seconds>,
+}
+
+/// A positive number of seconds.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[serde(try_from = "f64")]
+#[schemars(with = "f64")]
+pub struct Seconds(pub f64);
+
+/// A day: nobody waits longer for a verdict.
+const GREATEST_SECONDS: f64 = 86_400.0;
+
+impl TryFrom<f64> for Seconds {
+    type Error = String;
+    fn try_from(seconds: f64) -> Result<Self, String> {
+        if seconds > 0.0 && seconds <= GREATEST_SECONDS {
+            return Ok(Self(seconds));
+        }
+        Err(format!("{seconds} is not a time between 0 and {GREATEST_SECONDS} seconds"))
+    }
+}
+
+/// A program that can be asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize, JsonSchema, clap::ValueEnum)]
+#[serde(rename_all = "lowercase")]
+#[value(rename_all = "lowercase")]
+pub enum ValidatorName {
+    /// FreeCAD opens the STEP file.
+    FreeCad,
+    /// OpenSCAD does a Boolean operation on the side mesh of a solid.
+    OpenScad,
+}
+
+/// One operation.
+#[derive(Debug, Clone, PartialEq, JsonSchema)]
+#[schemars(tag = "kind", rename_all = "snake_case")]
+pub enum Operation {
+    /// Scale a part, while chosen features keep their shape and size.
+    ConstrainedScale(Box<ConstrainedScale>),
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum OperationKind {
+    ConstrainedScale,
+}
+
+impl<'de> Deserialize<'de> for Operation {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct OperationVisitor;
+        impl<'de> de::Visitor<'de> for OperationVisitor {
+            type Value = Operation;
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("a table with the key `kind`")
+            }
+            fn visit_map<A: de::MapAccess<'de>>(self, mut map: A) -> Result<Operation, A::Error> {
+                // Tables give `kind` first, see `node`.
+                match map.next_key::<String>()?.as_deref() {
+                    Some("kind") => {}
+                    _ => return Err(de::Error::missing_field("kind")),
+                }
+                let kind: OperationKind = map.next_value()?;
+                let rest = de::value::MapAccessDeserializer::new(map);
+                match kind {
+                    OperationKind::ConstrainedScale => {
+                        Deserialize::deserialize(rest).map(|o| Operation::ConstrainedScale(Box::new(o)))
+                    }
+                }
+            }
+        }
+        deserializer.deserialize_map(OperationVisitor)
+    }
+}
+
+/// Scale faces, while held loops keep their shape and size and move rigidly.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ConstrainedScale {
+    /// Factors along the three axes, all positive.
+    pub factors: Factors,
+    /// Fixed point of the scaling. Left out: the origin.
+    #[serde(default)]
+    pub center: Option<[LengthSetting; 3]>,
+    /// Directions of the three axes, orthonormal. Left out: the coordinate axes.
+    #[serde(default)]
+    pub axes: Option<[[f64; 3]; 3]>,
+    /// Faces to scale. Left out: the whole part.
+    #[serde(default)]
+    pub face: Option<Selector>,
+    /// Loops that keep their shape and size. Left out: none, and the scaling is plain.
+    #[serde(default)]
+    pub hold: Vec<Hold>,
+    /// How the loops are held.
+    #[serde(default)]
+    pub mode: HoldMode,
+    /// With `mode = "axes"`: the axes along which the size is held.
+    #[serde(default)]
+    pub held_axes: Vec<Axis>,
+    /// How a held feature may move to keep the surface fair.
+    #[serde(default)]
+    pub motion: Motion,
+    /// Rows of the natural border that follow the scaling exactly: 0 position, 1 tangent, 2 curvature.
+    #[serde(default)]
+    pub continuity: Continuity,
+    /// The energy that is made small.
+    #[serde(default)]
+    pub energy: Energy,
+}
+
+/// Three positive factors.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[serde(try_from = "[f64; 3]")]
+#[schemars(with = "[f64; 3]")]
+pub struct Factors(pub [f64; 3]);
+
+impl TryFrom<[f64; 3]> for Factors {
+    type Error = String;
+    fn try_from(factors: [f64; 3]) -> Result<Self, String> {
+        match factors.iter().find(|f| !(f.is_finite() && **f > 0.0)) {
+            Some(factor) => Err(format!("{factor} is not a factor; expected a positive number")),
+            None => Ok(Self(factors)),
+        }
+    }
+}
+
+/// An axis of the scaling.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Axis {
+    /// The first.
+    X,
+    /// The second.
+    Y,
+    /// The third.
+    Z,
+}
+
+/// How a loop is held.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum HoldMode {
+    /// Shape and size; it turns with the surface and moves with the part.
+    #[default]
+    Rigid,
+    /// Shape, size, direction and place.
+    Pinned,
+    /// Size along the axes that `held_axes` names; along the others it scales.
+    Axes,
+}
+
+/// Freedom of a held feature.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Motion {
+    /// Along its own axis.
+    #[default]
+    Normal,
+    /// In any direction.
+    Free,
+}
+
+/// Energy and what the surface is compared with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Energy {
+    /// Thin plate against the scaled surface under the slip of the held features.
+    #[default]
+    Slide,
+    /// The published formulation, for comparison.
+    Published,
+}
+
+/// Order of continuity at the natural border.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(try_from = "u64")]
+#[schemars(with = "u64", extend("enum" = [0, 1, 2]))]
+pub enum Continuity {
+    /// 0.
+    Position,
+    /// 1.
+    Tangent,
+    /// 2.
+    Curvature,
+}
+
+impl Default for Continuity {
+    fn default() -> Self {
+        Self::Tangent
+    }
+}
+
+impl TryFrom<u64> for Continuity {
+    type Error = String;
+    fn try_from(order: u64) -> Result<Self, String> {
+        match order {
+            0 => Ok(Self::Position),
+            1 => Ok(Self::Tangent),
+            2 => Ok(Self::Curvature),
+            _ => Err(format!("{order} is not a continuity; expected 0, 1 or 2")),
+        }
+    }
+}
+
+/// Loops to hold: exactly one key.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(try_from = "HoldKeys")]
+#[schemars(with = "HoldKeys")]
+pub enum Hold {
+    /// All inner loops of the B-spline faces in scope.
+    Inner,
+    /// The inner loop nearest to a point.
+    Near([LengthSetting; 3]),
+    /// The inner loop of that number on the only face in scope, from 0.
+    Index(usize),
+    /// The inner loop that uses an edge: `"#1042"`.
+    Edge(u64),
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+#[derive(Default)]
+#[schemars(rename = "Hold", extend("minProperties" = 1, "maxProperties" = 1))]
+struct HoldKeys {
+    /// A set of loops.
+    loops: Option<LoopSet>,
+    /// The inner loop nearest to this point.
+    near: Option<[LengthSetting; 3]>,
+    /// The inner loop of this number on the only face in scope, counted from 0.
+    index: Option<usize>,
+    /// The inner loop that uses this edge, by its instance name: `"#1042"`.
+    edge: Option<String>,
+}
+
+#[derive(Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+enum LoopSet {
+    /// All inner loops of the B-spline faces in scope.
+    Inner,
+}
+
+impl TryFrom<HoldKeys> for Hold {
+    type Error = String;
+    fn try_from(keys: HoldKeys) -> Result<Self, String> {
+        match keys {
+            HoldKeys { loops: Some(LoopSet::Inner), near: None, index: None, edge: None } => Ok(Self::Inner),
+            HoldKeys { loops: None, near: Some(point), index: None, edge: None } => Ok(Self::Near(point)),
+            HoldKeys { loops: None, near: None, index: Some(index), edge: None } => Ok(Self::Index(index)),
+            HoldKeys { loops: None, near: None, index: None, edge: Some(edge) } => {
+                super::selector::instance(&edge).map(Self::Edge)
+            }
+            _ => Err("expected exactly one of the keys `loops`, `near`, `index`, `edge`".to_owned()),
+        }
+    }
+}

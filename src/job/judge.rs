@@ -1,0 +1,173 @@
+//! Asks other programs about a written file, and meshes what they need.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use super::failure::PartError;
+use super::file::{SideFormat, ValidateSettings, ValidatorName};
+use super::output::FileError;
+use crate::brep::{BodyId, BodyKind};
+use crate::mesh::{Mesh, Tolerances, off, stl, tessellate_bodies};
+use crate::model::Model;
+use crate::validate::{Request, ValidateError, Validator, Verdict, ask_freecad, ask_openscad};
+
+impl From<ValidatorName> for Validator {
+    fn from(name: ValidatorName) -> Self {
+        match name {
+            ValidatorName::FreeCad => Self::FreeCad,
+            ValidatorName::OpenScad => Self::OpenScad,
+        }
+    }
+}
+
+/// The first required program that is not there: known before any data is touched.
+#[must_use]
+pub fn first_missing(settings: &ValidateSettings) -> Option<ValidateError> {
+    let wanted = settings.with.iter().map(|&name| Validator::from(name)).filter(|_| settings.require);
+    wanted.filter(|v| find(&v.program()).is_none()).map(missing).next()
+}
+
+fn missing(validator: Validator) -> ValidateError {
+    ValidateError::Missing {
+        program: validator.program().to_string_lossy().into_owned(),
+        install: validator.install_command(),
+        variable: validator.program_variable(),
+    }
+}
+
+/// Where a program is, by its path or in `PATH`.
+fn find(program: &OsStr) -> Option<PathBuf> {
+    let named = Path::new(program);
+    if named.components().count() > 1 {
+        return named.is_file().then(|| named.to_owned());
+    }
+    let path = std::env::var_os("PATH")?;
+    std::env::split_paths(&path).map(|folder| folder.join(named)).find(|place| place.is_file())
+}
+
+/// What the programs said.
+#[derive(Debug, Default)]
+pub struct Judged {
+    /// Verdicts in the job's order.
+    pub verdicts: Vec<Verdict>,
+    /// Programs that could not be asked, and why; none of them was required.
+    pub unasked: Vec<String>,
+}
+
+/// Asks all programs of a job about one written file.
+///
+/// # Errors
+/// [`PartError::Refused`], and [`PartError::NoVerdict`] when a program fails or a required one is missing.
+pub fn judge(
+    settings: &ValidateSettings,
+    written: &Path,
+    model: &Model,
+    chord: Option<f64>,
+) -> Result<Judged, PartError> {
+    let mut judged = Judged::default();
+    let timeout = settings.timeout.map_or(Request::DEFAULT_TIMEOUT, |s| Duration::from_secs_f64(s.0));
+    for &name in &settings.with {
+        let scratch = tempfile::tempdir().map_err(|source| io(Path::new("temporary folder"), source))?;
+        let asked = match name {
+            ValidatorName::FreeCad => ask_freecad(&request(written, scratch.path(), timeout)),
+            ValidatorName::OpenScad => match coarse_mesh(model, scratch.path(), chord)? {
+                Some(mesh) => ask_openscad(&request(&mesh, scratch.path(), timeout)),
+                None => {
+                    judged.unasked.push("OpenSCAD takes closed meshes, and the part has no solid".to_owned());
+                    continue;
+                }
+            },
+        };
+        match asked {
+            Ok(verdict) => judged.verdicts.push(verdict),
+            Err(error @ ValidateError::Missing { .. }) if !settings.require => {
+                judged.unasked.push(error.to_string());
+            }
+            Err(error) => return Err(error.into()),
+        }
+    }
+    Ok(judged)
+}
+
+/// The first refusal among some verdicts.
+///
+/// # Errors
+/// [`PartError::Refused`].
+pub fn refuse(verdicts: &[Verdict]) -> Result<(), PartError> {
+    match verdicts.iter().find(|verdict| !verdict.accepted) {
+        Some(verdict) => Err(PartError::Refused {
+            program: verdict.validator.as_str(),
+            messages: verdict.messages.clone(),
+        }),
+        None => Ok(()),
+    }
+}
+
+fn request<'a>(file: &'a Path, scratch: &'a Path, timeout: Duration) -> Request<'a> {
+    Request { file, scratch, timeout, program: None }
+}
+
+fn io(path: &Path, source: std::io::Error) -> PartError {
+    PartError::Output(FileError { path: path.to_owned(), source })
+}
+
+/// The closed mesh of the solids of a part, written for OpenSCAD; `None` without solids.
+fn coarse_mesh(model: &Model, scratch: &Path, chord: Option<f64>) -> Result<Option<PathBuf>, PartError> {
+    let Some(mesh) = solid_mesh(model, chord)? else { return Ok(None) };
+    let path = scratch.join("part.off");
+    let bytes = mesh_bytes(&mesh, SideFormat::Off);
+    std::fs::write(&path, bytes).map_err(|source| io(&path, source))?;
+    Ok(Some(path))
+}
+
+/// Triangles of all solids; `None` without solids.
+///
+/// # Errors
+/// [`PartError::Mesh`] naming the face.
+pub fn solid_mesh(model: &Model, chord: Option<f64>) -> Result<Option<Mesh>, PartError> {
+    let bodies = model.brep.bodies.iter();
+    let solids: Vec<BodyId> = bodies.filter(|(_, b)| b.kind == BodyKind::Solid).map(|(id, _)| id).collect();
+    if solids.is_empty() { Ok(None) } else { mesh_of(model, &solids, chord).map(Some) }
+}
+
+/// Triangles of all bodies.
+///
+/// # Errors
+/// [`PartError::Mesh`] naming the face.
+pub fn whole_mesh(model: &Model, chord: Option<f64>) -> Result<Mesh, PartError> {
+    let bodies: Vec<BodyId> = model.brep.bodies.ids().collect();
+    mesh_of(model, &bodies, chord)
+}
+
+fn mesh_of(model: &Model, bodies: &[BodyId], chord: Option<f64>) -> Result<Mesh, PartError> {
+    let mut tolerances = Tolerances::for_size(diagonal(model));
+    if let Some(chord) = chord {
+        tolerances.chord = chord;
+    }
+    tessellate_bodies(&model.brep, bodies, &tolerances).map_err(|error| {
+        let face = error.face().map(|face| format!("{}: ", super::select::describe(model, face)));
+        PartError::Mesh(format!("{}{error}", face.unwrap_or_default()))
+    })
+}
+
+/// Diagonal of the box of the vertices; 1 when they all coincide.
+fn diagonal(model: &Model) -> f64 {
+    let extents = super::measure::Figures::of(model).vertex_extents;
+    let length = extents.map_or(0.0, |[least, greatest]| {
+        (0..3).map(|k| (greatest[k] - least[k]).powi(2)).sum::<f64>().sqrt()
+    });
+    if length > 0.0 { length } else { 1.0 }
+}
+
+/// The bytes of a mesh file.
+#[must_use]
+pub fn mesh_bytes(mesh: &Mesh, format: SideFormat) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let written = match format {
+        SideFormat::Stl => stl::write_binary(mesh, "resurf", &mut bytes),
+        SideFormat::Off => off::write(mesh, &mut bytes),
+    };
+    written.expect("writing to memory cannot fail");
+    bytes
+}

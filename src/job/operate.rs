@@ -1,0 +1,213 @@
+//! From the words of a job to an operation on a model.
+
+use super::file::{self, ConstrainedScale, Operation};
+use super::report::{DiagnosticReport, OperationReport};
+use super::select::{self, SelectError, point_in};
+use crate::brep::{EdgeId, FaceId, LoopId};
+use crate::math::{Matrix3, Point3, Vector3};
+use crate::model::{ChangeSet, Model, Origin};
+use crate::ops::OperationError;
+use crate::ops::constrained_scale::{
+    Continuity, Energy, Freedom, Hold, Scaling,
+    plan::{HoldTarget, Params, Scope, plan},
+};
+use crate::source::Source;
+use crate::units::LengthUnit;
+
+/// An operation cannot be done on this part.
+#[derive(Debug, thiserror::Error)]
+pub enum OperateError {
+    /// The selector does not fit the part.
+    #[error("face: {0}")]
+    Face(SelectError),
+    /// A hold does not fit the part.
+    #[error("hold: {0}")]
+    Hold(String),
+    /// The operation refuses.
+    #[error(transparent)]
+    Operation(#[from] OperationError),
+    /// The part has no face.
+    #[error("the part has no face that was read")]
+    NoFace,
+}
+
+impl OperateError {
+    /// The stable code.
+    #[must_use]
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Face(SelectError::Several { .. }) => "select.several",
+            Self::Face(_) => "select.no-match",
+            Self::Hold(_) => "select.no-hold",
+            Self::Operation(error) => error.code(),
+            Self::NoFace => "select.no-face",
+        }
+    }
+}
+
+/// What an operation wants changed, and what it tells.
+pub type Operated = (ChangeSet, OperationReport);
+
+/// Plans one operation on a model.
+///
+/// # Errors
+/// [`OperateError`]; the model is as before in every case.
+pub fn operate(model: &Model, source: &Source, operation: &Operation) -> Result<Operated, OperateError> {
+    match operation {
+        Operation::ConstrainedScale(settings) => scale(model, source, settings),
+    }
+}
+
+fn scale(model: &Model, source: &Source, settings: &ConstrainedScale) -> Result<Operated, OperateError> {
+    let params = params(model, settings)?;
+    let planned = plan(model, &params)?;
+    let report = OperationReport {
+        kind: "constrained_scale".to_owned(),
+        changed: changed(&planned.change_set),
+        measures: serde_json::to_value(&planned.measures).unwrap_or_default(),
+        notes: planned.notes.iter().map(|note| DiagnosticReport::new(note, source)).collect(),
+    };
+    Ok((planned.change_set, report))
+}
+
+fn changed(changes: &ChangeSet) -> std::collections::BTreeMap<String, usize> {
+    let counts = [
+        ("surfaces", changes.surfaces.len()),
+        ("curves", changes.curves.len()),
+        ("pcurves", changes.pcurves.len()),
+        ("points", changes.points.len()),
+        ("free_curves", changes.free_curves.len()),
+    ];
+    counts.into_iter().map(|(name, count)| (name.to_owned(), count)).collect()
+}
+
+fn params(model: &Model, settings: &ConstrainedScale) -> Result<Params, OperateError> {
+    let (scope, faces) = match &settings.face {
+        Some(selector) => {
+            let faces = select::faces(model, selector).map_err(OperateError::Face)?;
+            (Scope::Faces(faces.clone()), faces)
+        }
+        None => (Scope::Part, model.brep.faces.ids().collect()),
+    };
+    let first = *faces.first().ok_or(OperateError::NoFace)?;
+    let unit = &model.context_of(first).length;
+    let mut hold = Vec::new();
+    for wanted in &settings.hold {
+        hold.push(target(model, &faces, wanted, unit)?);
+    }
+    Ok(Params { scaling: scaling(settings, unit), scope, hold, mode: mode(settings) })
+}
+
+fn scaling(settings: &ConstrainedScale, unit: &LengthUnit) -> Scaling {
+    let mut scaling = Scaling::new(settings.factors.0);
+    if let Some(center) = &settings.center {
+        scaling.center = point_in(center, unit);
+    }
+    if let Some(axes) = &settings.axes {
+        scaling.axes = Matrix3::from_columns(&axes.map(Vector3::from));
+    }
+    scaling.continuity = match settings.continuity {
+        file::Continuity::Position => Continuity::Position,
+        file::Continuity::Tangent => Continuity::Tangent,
+        file::Continuity::Curvature => Continuity::Curvature,
+    };
+    scaling.energy = match settings.energy {
+        file::Energy::Slide => Energy::Slide,
+        file::Energy::Published => Energy::Published,
+    };
+    scaling.freedom = match settings.motion {
+        file::Motion::Normal => Freedom::Normal,
+        file::Motion::Free => Freedom::Free,
+    };
+    scaling
+}
+
+fn mode(settings: &ConstrainedScale) -> Hold {
+    match settings.mode {
+        file::HoldMode::Rigid => Hold::Rigid,
+        file::HoldMode::Pinned => Hold::Pinned(None),
+        file::HoldMode::Axes => Hold::Axes(
+            [file::Axis::X, file::Axis::Y, file::Axis::Z].map(|axis| settings.held_axes.contains(&axis)),
+        ),
+    }
+}
+
+fn target(
+    model: &Model,
+    faces: &[FaceId],
+    hold: &file::Hold,
+    unit: &LengthUnit,
+) -> Result<HoldTarget, OperateError> {
+    match hold {
+        file::Hold::Inner => Ok(HoldTarget::InnerLoops),
+        file::Hold::Near(point) => {
+            let at = point_in(point, unit);
+            let loops = faces.iter().flat_map(|&face| inner_loops(model, face));
+            let nearest = loops.min_by(|&a, &b| {
+                distance_to_loop(model, a, &at).total_cmp(&distance_to_loop(model, b, &at)).then(a.cmp(&b))
+            });
+            nearest
+                .map(HoldTarget::Loop)
+                .ok_or_else(|| OperateError::Hold("the faces have no inner loop".to_owned()))
+        }
+        file::Hold::Index(index) => by_index(model, faces, *index),
+        file::Hold::Edge(name) => by_edge(model, faces, *name),
+    }
+}
+
+fn by_index(model: &Model, faces: &[FaceId], index: usize) -> Result<HoldTarget, OperateError> {
+    let [face] = faces else {
+        return Err(OperateError::Hold(format!(
+            "`index` needs one face in scope, and there are {}",
+            faces.len()
+        )));
+    };
+    let loops = inner_loops(model, *face);
+    let Some(&found) = loops.get(index) else {
+        let count = loops.len();
+        return Err(OperateError::Hold(format!(
+            "the face has {count} inner loops, counted from 0; found {index}"
+        )));
+    };
+    Ok(HoldTarget::Loop(found))
+}
+
+fn by_edge(model: &Model, faces: &[FaceId], name: u64) -> Result<HoldTarget, OperateError> {
+    let origin = Origin::Instance(name);
+    let edges = |face: FaceId| model.brep.coedges_of(face).map(|c| (c, model.brep.coedges[c].edge));
+    let names = |(coedge, edge)| {
+        let oriented = model.origins.coedges[coedge] == origin;
+        let found: Option<EdgeId> = (oriented || model.origins.edges[edge] == origin).then_some(edge);
+        found
+    };
+    let found = faces.iter().flat_map(|&face| edges(face)).find_map(names);
+    found
+        .map(HoldTarget::Edge)
+        .ok_or_else(|| OperateError::Hold(format!("no edge of the faces in scope is `#{name}`")))
+}
+
+fn inner_loops(model: &Model, face: FaceId) -> Vec<LoopId> {
+    let loops = &model.brep.faces[face].loops;
+    let outer = loops.iter().position(|&l| model.brep.loops[l].outer).unwrap_or(0);
+    loops.iter().enumerate().filter(|&(at, _)| at != outer).map(|(_, &l)| l).collect()
+}
+
+/// Distance of a point from the middle of a loop's vertices and curve points: of two loops, the one
+/// around the point is the nearer.
+fn distance_to_loop(model: &Model, of: LoopId, at: &Point3<f64>) -> f64 {
+    let brep = &model.brep;
+    let mut sum = Vector3::zeros();
+    let mut count = 0.0;
+    for &coedge in &brep.loops[of].coedges {
+        let edge = brep.coedges[coedge].edge;
+        for point in crate::brep::sample_edge(brep, edge, &EDGE_SAMPLING).unwrap_or_default() {
+            sum += point.point.coords;
+            count += 1.0;
+        }
+    }
+    if count > 0.0 { (Point3::from(sum / count) - at).norm() } else { f64::INFINITY }
+}
+
+/// Enough to tell loops apart.
+const EDGE_SAMPLING: crate::brep::EdgeSampling =
+    crate::brep::EdgeSampling { chord: f64::INFINITY, per_span: 8 };

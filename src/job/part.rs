@@ -1,0 +1,62 @@
+//! Reading one file: bytes, structure, model, and whether it is whole enough to go on.
+
+use std::path::Path;
+
+use super::failure::PartError;
+use super::output::FileError;
+use crate::diagnostic::Diagnostics;
+use crate::document::Document;
+use crate::model::Model;
+
+/// A file that was read.
+#[derive(Debug)]
+pub struct Read {
+    /// Its bytes and structure.
+    pub document: Document,
+    /// What was found in the file.
+    pub diagnostics: Diagnostics,
+}
+
+/// Codes of files that cannot be trusted to be whole: what is missing may be what the job is about.
+const DAMAGE: [&str; 3] = ["step.truncated", "step.not-exchange-structure", "step.compressed"];
+
+impl Read {
+    /// Reads a file from its place.
+    ///
+    /// # Errors
+    /// [`PartError::Input`], [`PartError::Open`].
+    pub fn file(path: &Path) -> Result<Self, PartError> {
+        let bytes = std::fs::read(path)
+            .map_err(|source| PartError::Input(FileError { path: path.to_owned(), source }))?;
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
+        Self::bytes(bytes, extension)
+    }
+
+    /// Reads bytes.
+    ///
+    /// # Errors
+    /// [`PartError::Open`].
+    pub fn bytes(bytes: Vec<u8>, extension: &str) -> Result<Self, PartError> {
+        let mut diagnostics = Diagnostics::default();
+        let document = Document::open(bytes, extension, &mut diagnostics)?;
+        Ok(Self { document, diagnostics })
+    }
+
+    /// The first damage that makes a file unfit.
+    ///
+    /// # Errors
+    /// [`PartError::Damaged`] with the place.
+    pub fn refuse_damage(&self) -> Result<(), PartError> {
+        let damage = self.diagnostics.kept().iter().find(|fact| DAMAGE.contains(&fact.code));
+        let Some(fact) = damage else { return Ok(()) };
+        let place =
+            fact.span.map(|span| format!(" (line {})", self.document.source().position(span.start).line));
+        Err(PartError::Damaged(format!("{}{}", fact.message, place.unwrap_or_default())))
+    }
+
+    /// What the file means.
+    #[must_use]
+    pub fn model(&mut self) -> Model {
+        self.document.model(&mut self.diagnostics)
+    }
+}

@@ -1,0 +1,118 @@
+//! Text of a job file to [`Node`]s to a [`Job`], with every error placed in the text.
+
+use std::ops::Range;
+
+use super::file::Job;
+use super::node::{Entry, Node, NodeError, Value, decode};
+use super::selector::Selector;
+
+/// The two spellings of a job file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Syntax {
+    /// TOML 1.0.
+    Toml,
+    /// RFC 8259.
+    Json,
+}
+
+/// A job file that is refused.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{message}{}", in_path(path))]
+pub struct JobFileError {
+    /// Byte range in the text.
+    pub span: Range<usize>,
+    /// The key on the way, `operation[0].factors`; empty at the top.
+    pub path: String,
+    /// Lower-case fragment: what was found, and what would have been right.
+    pub message: String,
+}
+
+fn in_path(path: &str) -> String {
+    if path.is_empty() { String::new() } else { format!(" (in `{path}`)") }
+}
+
+impl JobFileError {
+    fn new(span: Range<usize>, message: impl Into<String>) -> Self {
+        Self { span, path: String::new(), message: message.into() }
+    }
+}
+
+/// Reads and checks a job file. No file is touched.
+///
+/// # Errors
+/// The first thing that is wrong, at its place.
+pub fn read(text: &str, syntax: Syntax) -> Result<Job, JobFileError> {
+    let node = match syntax {
+        Syntax::Toml => toml_node(text)?,
+        Syntax::Json => super::json::parse(text).map_err(|e| JobFileError::new(e.at..e.at + 1, e.message))?,
+    };
+    decode(&node).map_err(placed)
+}
+
+/// Reads one selector in the words of a TOML value.
+///
+/// # Errors
+/// As [`read`]; places count from the selector's start.
+pub fn read_selector(text: &str) -> Result<Selector, JobFileError> {
+    let text = format!("{SELECTOR_KEY}{text}");
+    let Value::Table(entries) = toml_node(&text)?.value else {
+        return Err(JobFileError::new(0..0, "expected a selector"));
+    };
+    let [entry] = entries.as_slice() else {
+        return Err(JobFileError::new(0..0, "expected one selector"));
+    };
+    decode(&entry.value).map_err(placed)
+}
+
+const SELECTOR_KEY: &str = "face=";
+
+fn placed(error: NodeError) -> JobFileError {
+    let mut path = String::new();
+    for step in error.path.iter().rev() {
+        if !path.is_empty() && !step.starts_with('[') {
+            path.push('.');
+        }
+        path.push_str(step);
+    }
+    JobFileError { span: error.span.unwrap_or(0..0), path, message: error.message }
+}
+
+fn toml_node(text: &str) -> Result<Node, JobFileError> {
+    let table = toml::de::DeTable::parse(text)
+        .map_err(|e| JobFileError::new(e.span().unwrap_or(0..0), e.message().replace('\n', ", ")))?;
+    let span = table.span();
+    Ok(Node { span, value: toml_table(table.get_ref())? })
+}
+
+fn toml_table(table: &toml::de::DeTable<'_>) -> Result<Value, JobFileError> {
+    let mut entries = Vec::with_capacity(table.len());
+    for (key, value) in table {
+        let value = toml_value(value)?;
+        entries.push(Entry { key: key.get_ref().to_string(), key_span: key.span(), value });
+    }
+    entries.sort_by_key(|entry| entry.key_span.start);
+    Ok(Value::Table(entries))
+}
+
+// The TOML parser limits the nesting, and with it this recursion.
+fn toml_value(value: &toml::Spanned<toml::de::DeValue<'_>>) -> Result<Node, JobFileError> {
+    use toml::de::DeValue;
+    let span = value.span();
+    let number = |text: String| text.replace('_', "");
+    let value = match value.get_ref() {
+        DeValue::String(text) => Value::Text(text.to_string()),
+        DeValue::Integer(integer) => {
+            let parsed = i64::from_str_radix(&number(integer.as_str().to_owned()), integer.radix());
+            Value::Integer(parsed.map_err(|_| JobFileError::new(span.clone(), "integer out of range"))?)
+        }
+        DeValue::Float(float) => {
+            let parsed = number(float.as_str().to_owned()).parse();
+            Value::Float(parsed.map_err(|_| JobFileError::new(span.clone(), "not a number"))?)
+        }
+        DeValue::Boolean(boolean) => Value::Boolean(*boolean),
+        DeValue::Datetime(_) => return Err(JobFileError::new(span, "no key of a job takes a date")),
+        DeValue::Array(items) => Value::List(items.iter().map(toml_value).collect::<Result<_, _>>()?),
+        DeValue::Table(table) => toml_table(table)?,
+    };
+    Ok(Node { span, value })
+}

@@ -1,0 +1,195 @@
+//! Runs a job over its parts: each is read, changed, written beside its place, read again, judged by
+//! others, and only then moved into place.
+
+use std::path::Path;
+use std::time::Instant;
+
+use super::failure::{PartError, code};
+use super::file::Job;
+use super::judge;
+use super::measure::Figures;
+use super::operate::operate;
+use super::output::Staged;
+use super::part::Read;
+use super::plan::Part;
+use super::report::{DiagnosticReport, PartReport, Report, Status, WritePath};
+use crate::brep::FaceId;
+use crate::document::Stamp;
+use crate::model::{ChangeSet, Model};
+
+/// Whether a run writes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mode {
+    /// Writes outputs.
+    Write,
+    /// Does everything but write and ask other programs.
+    DryRun,
+}
+
+/// Runs a job. Parts are done in order; one that fails does not stop the others. `watch` sees each
+/// part's report when it is finished.
+pub fn run(job: &Job, parts: &[Part], mode: Mode, watch: &mut dyn FnMut(&PartReport)) -> Report {
+    let stamp = Stamp {
+        time: super::clock::time_stamp(),
+        preprocessor: format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION")),
+    };
+    let mut reports = Vec::with_capacity(parts.len());
+    for part in parts {
+        let report = run_part(job, part, mode, &stamp);
+        watch(&report);
+        reports.push(report);
+    }
+    Report {
+        version: 1,
+        program: stamp.preprocessor,
+        job: job.name.clone(),
+        code: overall(&reports),
+        parts: reports,
+    }
+}
+
+/// One part's own code is the run's; of several, a failed one makes the run's 1.
+fn overall(reports: &[PartReport]) -> u8 {
+    match reports {
+        [only] => only.code,
+        _ if reports.iter().all(|report| report.code == code::DONE) => code::DONE,
+        _ => code::GATE,
+    }
+}
+
+fn run_part(job: &Job, part: &Part, mode: Mode, stamp: &Stamp) -> PartReport {
+    let start = Instant::now();
+    let name = |path: &Path| path.to_string_lossy().into_owned();
+    let mut report = PartReport::new(name(&part.input), name(&part.output));
+    match go(job, part, mode, stamp, &mut report) {
+        Ok(()) => report.status = Status::Done,
+        Err(error) => {
+            report.code = error.exit_code();
+            report.failure = Some(error.failure());
+            report.side_files.clear();
+        }
+    }
+    report.seconds = start.elapsed().as_secs_f64();
+    report.peak_bytes = peak_bytes();
+    report
+}
+
+fn go(job: &Job, part: &Part, mode: Mode, stamp: &Stamp, report: &mut PartReport) -> Result<(), PartError> {
+    let mut read = Read::file(&part.input)?;
+    let result = changed_bytes(job, &mut read, stamp, report);
+    report.take_diagnostics(&read.diagnostics, read.document.source());
+    let changed = result?;
+    // The input's bytes serve again when nothing changed: a copy would double the memory.
+    let bytes = changed.as_deref().unwrap_or_else(|| read.document.source().bytes());
+    let needs_model = !job.operation.is_empty() || !job.also.is_empty() || !job.validate.with.is_empty();
+    let after = if needs_model { Some(read_again(bytes, &part.output, report)?) } else { None };
+    if mode == Mode::DryRun {
+        return Ok(());
+    }
+    let staged = Staged::write(&part.output, bytes).map_err(PartError::Output)?;
+    let mut sides = Vec::new();
+    if let Some(model) = &after {
+        sides = side_files(job, part, model, report)?;
+        let judged = judge::judge(&job.validate, staged.path(), model, None)?;
+        report.validators = judged.verdicts;
+        report.losses.extend(judged.unasked.into_iter().map(unasked));
+        judge::refuse(&report.validators)?;
+    }
+    for side in sides {
+        side.commit().map_err(PartError::Output)?;
+    }
+    staged.commit().map_err(PartError::Output)
+}
+
+/// The bytes of the result; `None` when nothing changes.
+fn changed_bytes(
+    job: &Job,
+    read: &mut Read,
+    stamp: &Stamp,
+    report: &mut PartReport,
+) -> Result<Option<Vec<u8>>, PartError> {
+    read.refuse_damage()?;
+    report.write_path = Some(WritePath::Verbatim);
+    if job.operation.is_empty() {
+        return Ok(None);
+    }
+    let model = read.model();
+    report.before = Some(Figures::of(&model));
+    let mut changes = ChangeSet::default();
+    for operation in &job.operation {
+        let (planned, measured) = operate(&model, read.document.source(), operation)?;
+        changes = planned;
+        report.operations.push(measured);
+    }
+    let patch = read.document.lower(&model, &changes, stamp)?;
+    report.edits = Some(patch.counts().into());
+    if patch.is_empty() {
+        return Ok(None);
+    }
+    report.write_path = Some(WritePath::Patched);
+    Ok(Some(patch.apply(read.document.source().bytes())))
+}
+
+/// Reads the result as anybody else would, and compares it with the input.
+fn read_again(bytes: &[u8], output: &Path, report: &mut PartReport) -> Result<Model, PartError> {
+    let extension = output.extension().and_then(|e| e.to_str()).unwrap_or_default();
+    let mut read = Read::bytes(bytes.to_vec(), extension)?;
+    let model = read.model();
+    let after = Figures::of(&model);
+    let mut findings = Vec::new();
+    if let Some(before) = &report.before {
+        for (name, was, is) in before.differing_counts(&after) {
+            findings.push(format!("{name}: {was} before, {is} after"));
+        }
+        if before.surfaces != after.surfaces {
+            findings.push("the kinds of the surfaces differ".to_owned());
+        }
+    }
+    for (code, count) in read.diagnostics.counts() {
+        let before = report.diagnostic_counts.get(*code).copied().unwrap_or(0);
+        if *count > before && report.before.is_some() {
+            findings.push(format!("{code}: {before} before, {count} after"));
+        }
+    }
+    report.after = Some(after);
+    if findings.is_empty() { Ok(model) } else { Err(PartError::Check(findings)) }
+}
+
+fn side_files(
+    job: &Job,
+    part: &Part,
+    model: &Model,
+    report: &mut PartReport,
+) -> Result<Vec<Staged>, PartError> {
+    if job.also.is_empty() {
+        return Ok(Vec::new());
+    }
+    let first = model.brep.faces.ids().next();
+    let unit = |face: FaceId| &model.context_of(face).length;
+    let chord = first.and_then(|face| job.tolerance.length.map(|length| length.0.in_unit(unit(face))));
+    let mesh = judge::whole_mesh(model, chord)?;
+    let mut staged = Vec::new();
+    for &format in &job.also {
+        let path = part.output.with_extension(format.extension());
+        staged.push(Staged::write(&path, &judge::mesh_bytes(&mesh, format)).map_err(PartError::Output)?);
+        report.side_files.push(path.to_string_lossy().into_owned());
+    }
+    Ok(staged)
+}
+
+fn unasked(message: String) -> DiagnosticReport {
+    DiagnosticReport {
+        code: "validate.not-asked".to_owned(),
+        severity: "warning".to_owned(),
+        entity: None,
+        line: None,
+        message,
+    }
+}
+
+/// Greatest resident memory of the process, where Linux tells.
+fn peak_bytes() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    line.trim().trim_end_matches("kB").trim().parse::<u64>().ok().map(|kilobytes| kilobytes * 1024)
+}

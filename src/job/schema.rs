@@ -1,0 +1,22 @@
+//! JSON Schema of the job file and of the report, generated from their types.
+
+use super::file::Job;
+use super::report::Report;
+
+/// The schema of the job file, with a line feed behind it.
+#[must_use]
+pub fn job() -> String {
+    text(&schemars::schema_for!(Job))
+}
+
+/// The schema of the report, with a line feed behind it.
+#[must_use]
+pub fn report() -> String {
+    text(&schemars::schema_for!(Report))
+}
+
+fn text(schema: &schemars::Schema) -> String {
+    let mut text = serde_json::to_string_pretty(schema).expect("a schema is a tree of texts and numbers");
+    text.push('\n');
+    text
+}

@@ -1,0 +1,468 @@
+//! Triangles of one face: constrained Delaunay in the scaled parameter plane, refined until the triangles
+//! lie on the surface.
+//!
+//! The boundary is given and never divided here: its points belong to the neighbours, too.
+
+use super::Tolerances;
+use super::lattice::Lattice;
+use crate::geometry::nurbs::SurfaceDerivatives;
+use crate::math::Point3;
+use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, PositionInTriangulation, Triangulation};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+
+/// Rounds of refinement. Each at least halves the triangles that need it, so the sag falls to 1/4 or less;
+/// what is left after so many rounds is not curvature but a gap or a fold in the data.
+const ROUNDS: usize = 6;
+
+/// Distance from the boundary, in cells, within which no inner point is set: closer ones make slivers.
+const CLEARANCE: f64 = 0.35;
+
+/// Triangles with no side longer than this many chord tolerances are left alone however steep they stand:
+/// the gap between an edge and its surface would be refined for ever.
+const SMALLEST: f64 = 4.0;
+
+/// A point of the boundary: parameters on this face, and the mesh's vertex.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Corner {
+    pub uv: [f64; 2],
+    pub vertex: u32,
+    pub point: Point3<f64>,
+}
+
+/// A point of the triangulated region.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Node {
+    pub uv: [f64; 2],
+    pub point: Point3<f64>,
+    /// The mesh's vertex; `None` for a point within the face.
+    pub vertex: Option<u32>,
+}
+
+/// Triangles over nodes, counter-clockwise in the parameter plane.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Region {
+    pub nodes: Vec<Node>,
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// Why a region cannot be triangulated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum RegionError {
+    /// The boundary has no extent in the parameter plane, or is not finite.
+    Degenerate,
+    /// Two pieces of the boundary cross near the point.
+    Crossing(Point3<f64>),
+    /// More points than the budget allows.
+    TooMany,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Site {
+    position: Point2<f64>,
+    node: u32,
+}
+
+impl HasPosition for Site {
+    type Scalar = f64;
+    fn position(&self) -> Point2<f64> {
+        self.position
+    }
+}
+
+/// A region in the making.
+struct Work<'a, E> {
+    nodes: Vec<Node>,
+    cdt: ConstrainedDelaunayTriangulation<Site>,
+    /// Pairs of sites between which an odd number of boundary pieces run.
+    walls: BTreeSet<(usize, usize)>,
+    lattice: Lattice,
+    evaluate: &'a E,
+    budget: usize,
+}
+
+/// Triangulates what lies inside an odd number of loops.
+///
+/// Points at one place of the parameter plane with different vertices count as crossing boundaries.
+pub(super) fn triangulate<E: Fn(f64, f64) -> SurfaceDerivatives>(
+    loops: &[Vec<Corner>],
+    tolerances: &Tolerances,
+    budget: usize,
+    evaluate: &E,
+) -> Result<Region, RegionError> {
+    let corners = || loops.iter().flatten();
+    let first = corners().next().ok_or(RegionError::Degenerate)?.uv;
+    let bounds = corners().fold([first; 2], |[low, high], corner| {
+        [[0, 1].map(|k| low[k].min(corner.uv[k])), [0, 1].map(|k| high[k].max(corner.uv[k]))]
+    });
+    let lattice = Lattice::new(bounds, tolerances, evaluate).ok_or(RegionError::Degenerate)?;
+    let cdt = ConstrainedDelaunayTriangulation::new();
+    let mut work = Work { nodes: Vec::new(), cdt, walls: BTreeSet::new(), lattice, evaluate, budget };
+    work.add_boundary(loops)?;
+    work.add_lattice(loops)?;
+    for _ in 0..ROUNDS {
+        let wanted = work.too_coarse(tolerances);
+        if wanted.is_empty() {
+            break;
+        }
+        for uv in wanted {
+            work.add_inner(uv)?;
+        }
+    }
+    let triangles = work.inner_triangles();
+    Ok(Region { nodes: work.nodes, triangles })
+}
+
+impl<E: Fn(f64, f64) -> SurfaceDerivatives> Work<'_, E> {
+    fn position(&self, uv: [f64; 2]) -> Point2<f64> {
+        let tidy = |k: usize| {
+            let scaled = uv[k] * self.lattice.scale[k];
+            // The library refuses numbers nearer to zero than this.
+            if scaled.abs() < spade::MIN_ALLOWED_VALUE { 0.0 } else { scaled }
+        };
+        Point2::new(tidy(0), tidy(1))
+    }
+
+    fn add_boundary(&mut self, loops: &[Vec<Corner>]) -> Result<(), RegionError> {
+        let mut pieces = Vec::new();
+        let mut known = BTreeMap::new();
+        for corners in loops {
+            let mut handles = Vec::with_capacity(corners.len());
+            for corner in corners {
+                let position = self.position(corner.uv);
+                // Zero added, since -0 and 0 are one place.
+                let place = [position.x, position.y].map(|c| (c + 0.0).to_bits());
+                if let Some(&vertex) = known.get(&place) {
+                    let node = self.nodes[self.cdt.vertex(vertex).data().node as usize];
+                    if node.vertex != Some(corner.vertex) {
+                        return Err(RegionError::Crossing(corner.point));
+                    }
+                    handles.push(vertex);
+                    continue;
+                }
+                let node = self.push_node(corner.uv, corner.point, Some(corner.vertex))?;
+                let vertex = self.cdt.insert(Site { position, node }).map_err(|_| RegionError::Degenerate)?;
+                known.insert(place, vertex);
+                handles.push(vertex);
+            }
+            let ends = handles.iter().skip(1).chain(handles.first());
+            pieces.extend(handles.iter().zip(ends).map(|(&a, &b)| (a, b)));
+        }
+        for (from, to) in pieces.into_iter().filter(|(from, to)| from != to) {
+            let edges = self.cdt.try_add_constraint(from, to);
+            if edges.is_empty() {
+                let node = self.cdt.vertex(from).data().node as usize;
+                return Err(RegionError::Crossing(self.nodes[node].point));
+            }
+            for edge in edges {
+                let ends = self.cdt.directed_edge(edge).vertices().map(|v| v.fix().index());
+                let wall = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+                if !self.walls.remove(&wall) {
+                    self.walls.insert(wall);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn push_node(
+        &mut self,
+        uv: [f64; 2],
+        point: Point3<f64>,
+        vertex: Option<u32>,
+    ) -> Result<u32, RegionError> {
+        if self.nodes.len() >= self.budget {
+            return Err(RegionError::TooMany);
+        }
+        let node = u32::try_from(self.nodes.len()).map_err(|_| RegionError::TooMany)?;
+        self.nodes.push(Node { uv, point, vertex });
+        Ok(node)
+    }
+
+    /// Adds a point within the face, unless it falls on a boundary or another point.
+    fn add_inner(&mut self, uv: [f64; 2]) -> Result<(), RegionError> {
+        let position = self.position(uv);
+        let free = match self.cdt.locate(position) {
+            PositionInTriangulation::OnFace(_) => true,
+            PositionInTriangulation::OnEdge(edge) => !self.cdt.is_constraint_edge(edge.as_undirected()),
+            _ => false,
+        };
+        let point = self.point(uv);
+        if !free || !point.iter().all(|c| c.is_finite()) {
+            return Ok(());
+        }
+        let node = self.push_node(uv, point, None)?;
+        self.cdt.insert(Site { position, node }).map_err(|_| RegionError::Degenerate)?;
+        Ok(())
+    }
+
+    /// Adds the lattice's points that lie inside and clear of the boundary, line by line.
+    fn add_lattice(&mut self, loops: &[Vec<Corner>]) -> Result<(), RegionError> {
+        let scale = self.lattice.scale;
+        let scaled = |corner: &Corner| [corner.uv[0] * scale[0], corner.uv[1] * scale[1]];
+        let segments: Vec<[[f64; 2]; 2]> = loops
+            .iter()
+            .flat_map(|l| l.iter().zip(l.iter().skip(1).chain(l.first())))
+            .map(|(a, b)| [scaled(a), scaled(b)])
+            .collect();
+        let (us, vs) = (self.lattice.us.clone(), self.lattice.vs.clone());
+        for &v in &vs {
+            let y = v * scale[1];
+            let reached =
+                |[a, b]: &&[[f64; 2]; 2]| a[1].min(b[1]) - CLEARANCE <= y && y <= a[1].max(b[1]) + CLEARANCE;
+            let near: Vec<_> = segments.iter().filter(reached).collect();
+            let mut crossings: Vec<f64> = near
+                .iter()
+                .filter(|[a, b]| (a[1] <= y) != (b[1] <= y))
+                .map(|[a, b]| a[0] + (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1]))
+                .collect();
+            crossings.sort_by(f64::total_cmp);
+            for &u in &us {
+                let x = u * scale[0];
+                let inside = crossings.partition_point(|&c| c < x) % 2 == 1;
+                if inside && near.iter().all(|segment| distance([x, y], segment) > CLEARANCE) {
+                    self.add_inner([u, v])?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Which faces of the triangulation lie inside an odd number of loops.
+    fn inside(&self) -> Vec<bool> {
+        let mut inside: Vec<Option<bool>> = vec![None; self.cdt.num_all_faces()];
+        let outer = self.cdt.outer_face().fix().index();
+        inside[outer] = Some(false);
+        let mut queue = VecDeque::new();
+        let wall = |edge: spade::handles::DirectedEdgeHandle<'_, Site, (), spade::CdtEdge<()>, ()>| {
+            let [a, b] = edge.vertices().map(|v| v.fix().index());
+            self.walls.contains(&(a.min(b), a.max(b)))
+        };
+        for edge in self.cdt.convex_hull() {
+            // Of the two sides of a hull edge one is the outer face.
+            for side in [edge, edge.rev()] {
+                let face = side.face().fix().index();
+                if inside[face].is_none() {
+                    inside[face] = Some(wall(side));
+                    queue.extend(side.face().as_inner().map(|face| face.fix()));
+                }
+            }
+        }
+        while let Some(face) = queue.pop_front() {
+            let here = inside[face.index()].unwrap_or(false);
+            for edge in self.cdt.face(face).adjacent_edges() {
+                let neighbour = edge.rev().face();
+                if inside[neighbour.fix().index()].is_none() {
+                    inside[neighbour.fix().index()] = Some(here ^ wall(edge));
+                    queue.extend(neighbour.as_inner().map(|face| face.fix()));
+                }
+            }
+        }
+        inside.into_iter().map(|side| side.unwrap_or(false)).collect()
+    }
+
+    fn inner_triangles(&self) -> Vec<[u32; 3]> {
+        let inside = self.inside();
+        let inner = self.cdt.inner_faces().filter(|face| inside[face.fix().index()]);
+        inner.map(|face| face.vertices().map(|v| v.data().node)).collect()
+    }
+
+    /// Parameters where a triangle or a side between two triangles is off the surface by more than the
+    /// chord tolerance: for each triangle the worst.
+    fn too_coarse(&self, tolerances: &Tolerances) -> Vec<[f64; 2]> {
+        let inside = self.inside();
+        let mut wanted = Vec::new();
+        for face in self.cdt.inner_faces().filter(|face| inside[face.fix().index()]) {
+            let [a, b, c] = face.vertices().map(|v| self.nodes[v.data().node as usize]);
+            let sides = [(b.point - a.point).norm(), (c.point - b.point).norm(), (a.point - c.point).norm()];
+            let smallest = SMALLEST * tolerances.chord;
+            if sides.iter().all(|&side| side < smallest) {
+                continue;
+            }
+            let middle = [0, 1].map(|k| (a.uv[k] + b.uv[k] + c.uv[k]) / 3.0);
+            let normal = (b.point - a.point).cross(&(c.point - a.point)).try_normalize(0.0);
+            let off = normal.map_or(0.0, |n| (self.point(middle) - a.point).dot(&n).abs());
+            let mut worst = (off, middle);
+            for edge in face.adjacent_edges().into_iter().filter(|edge| !edge.is_constraint_edge()) {
+                let [from, to] = edge.vertices().map(|v| self.nodes[v.data().node as usize]);
+                let middle = [0, 1].map(|k| 0.5 * (from.uv[k] + to.uv[k]));
+                let off = off_segment(&self.point(middle), &from.point, &to.point);
+                if off > worst.0 {
+                    worst = (off, middle);
+                }
+            }
+            if worst.0 > tolerances.chord {
+                wanted.push(worst.1);
+            }
+        }
+        wanted
+    }
+
+    fn point(&self, uv: [f64; 2]) -> Point3<f64> {
+        (self.evaluate)(uv[0], uv[1]).point
+    }
+}
+
+/// Distance of a point of the plane from a segment.
+fn distance([x, y]: [f64; 2], [a, b]: &[[f64; 2]; 2]) -> f64 {
+    let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
+    let square = dx * dx + dy * dy;
+    let t = if square > 0.0 { (((x - a[0]) * dx + (y - a[1]) * dy) / square).clamp(0.0, 1.0) } else { 0.0 };
+    (a[0] + t * dx - x).hypot(a[1] + t * dy - y)
+}
+
+/// Distance of a point in space from a segment.
+fn off_segment(point: &Point3<f64>, from: &Point3<f64>, to: &Point3<f64>) -> f64 {
+    let along = to - from;
+    let square = along.norm_squared();
+    let t = if square > 0.0 { ((point - from).dot(&along) / square).clamp(0.0, 1.0) } else { 0.0 };
+    (from + along * t - point).norm()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Vector3;
+    use std::f64::consts::{PI, TAU};
+
+    const TOLERANCES: Tolerances = Tolerances { chord: 0.01, angle: 0.3 };
+
+    fn plane(u: f64, v: f64) -> SurfaceDerivatives {
+        let zero = Vector3::zeros();
+        let (du, dv) = (Vector3::x(), Vector3::y());
+        SurfaceDerivatives { point: Point3::new(u, v, 0.0), du, dv, duu: zero, duv: zero, dvv: zero }
+    }
+
+    /// `(r cos u, r sin u, v)`.
+    fn cylinder(u: f64, v: f64) -> SurfaceDerivatives {
+        let (sin, cos) = u.sin_cos();
+        let zero = Vector3::zeros();
+        SurfaceDerivatives {
+            point: Point3::new(5.0 * cos, 5.0 * sin, v),
+            du: Vector3::new(-5.0 * sin, 5.0 * cos, 0.0),
+            dv: Vector3::z(),
+            duu: Vector3::new(-5.0 * cos, -5.0 * sin, 0.0),
+            duv: zero,
+            dvv: zero,
+        }
+    }
+
+    /// The graph of `z = (u² + v²) / 2`.
+    fn bowl(u: f64, v: f64) -> SurfaceDerivatives {
+        SurfaceDerivatives {
+            point: Point3::new(u, v, 0.5 * (u * u + v * v)),
+            du: Vector3::new(1.0, 0.0, u),
+            dv: Vector3::new(0.0, 1.0, v),
+            duu: Vector3::z(),
+            duv: Vector3::zeros(),
+            dvv: Vector3::z(),
+        }
+    }
+
+    fn corners(
+        evaluate: impl Fn(f64, f64) -> SurfaceDerivatives,
+        first: u32,
+        uvs: &[[f64; 2]],
+    ) -> Vec<Corner> {
+        let corner =
+            |(&uv, vertex): (&[f64; 2], u32)| Corner { uv, vertex, point: evaluate(uv[0], uv[1]).point };
+        uvs.iter().zip(first..).map(corner).collect()
+    }
+
+    fn circle(count: u32, radius: f64, center: [f64; 2]) -> Vec<[f64; 2]> {
+        let angle = |k| TAU * f64::from(k) / f64::from(count);
+        (0..count)
+            .map(|k| [center[0] + radius * angle(k).cos(), center[1] + radius * angle(k).sin()])
+            .collect()
+    }
+
+    fn area(region: &Region) -> f64 {
+        let corner = |at: u32| region.nodes[at as usize].point;
+        let area = |[a, b, c]: [Point3<f64>; 3]| 0.5 * (b - a).cross(&(c - a)).norm();
+        region.triangles.iter().map(|t| area(t.map(corner))).sum()
+    }
+
+    #[test]
+    fn a_plane_with_holes_needs_no_inner_points_and_has_its_area() {
+        let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]];
+        let hole = circle(40, 0.5, [1.0, 1.0]);
+        let mut loops = vec![corners(plane, 0, &square), corners(plane, 4, &hole)];
+        let polygon = 0.5 * 40.0 * 0.25 * (TAU / 40.0).sin();
+        for _ in 0..2 {
+            let region = triangulate(&loops, &TOLERANCES, 1000, &plane).expect("a good region");
+            assert!((area(&region) - (12.0 - polygon)).abs() < 1e-12);
+            assert_eq!(region.nodes.len(), 44);
+            // n points, h holes: n + 2 h - 2 triangles.
+            assert_eq!(region.triangles.len(), 44);
+            loops[1].reverse();
+        }
+    }
+
+    #[test]
+    fn an_island_in_a_hole_is_inside_and_a_slit_is_not_a_wall() {
+        let outer = circle(30, 3.0, [0.0, 0.0]);
+        let loops: Vec<_> =
+            [(outer, 0), (circle(30, 2.0, [0.0, 0.0]), 30), (circle(30, 1.0, [0.0, 0.0]), 60)]
+                .map(|(uvs, first)| corners(plane, first, &uvs))
+                .into();
+        let region = triangulate(&loops, &TOLERANCES, 1000, &plane).expect("a good region");
+        let polygon = |r: f64| 15.0 * r * r * (TAU / 30.0).sin();
+        assert!((area(&region) - (polygon(3.0) - polygon(2.0) + polygon(1.0))).abs() < 1e-12);
+        // A square with a slit from its first corner to the middle and back.
+        let slit = [[0.0, 0.0], [1.0, 1.0], [0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
+        let mut slit = corners(plane, 0, &slit);
+        slit[2].vertex = 0;
+        let region = triangulate(&[slit], &TOLERANCES, 1000, &plane).expect("a good region");
+        assert!((area(&region) - 4.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_curved_face_keeps_the_chord_tolerance() {
+        let rectangle = |count: u32, [width, height]: [f64; 2]| -> Vec<[f64; 2]> {
+            let share = |k: u32| f64::from(k) / f64::from(count);
+            let bottom = (0..count).map(|k| [width * share(k), 0.0]);
+            let top = (0..count).map(|k| [width * (1.0 - share(k)), height]);
+            let sides = [[width, 0.0], [0.0, height]].into_iter();
+            let mut all: Vec<_> =
+                bottom.chain(sides.clone().take(1)).chain(top).chain(sides.skip(1)).collect();
+            all.dedup();
+            all
+        };
+        let side = corners(cylinder, 0, &rectangle(60, [PI, 7.0]));
+        let region = triangulate(&[side], &TOLERANCES, 10_000, &cylinder).expect("a good region");
+        let exact = PI * 5.0 * 7.0;
+        assert!((area(&region) - exact).abs() < 2e-3 * exact, "{}", area(&region));
+        // Three points lie on the cylinder, so the greatest distance is the sagitta of the longest angle.
+        for triangle in &region.triangles {
+            let us = triangle.map(|at| region.nodes[at as usize].uv[0]);
+            let angle = us.iter().fold(0.0, |a: f64, u| a.max((u - us[0]).abs()));
+            assert!(5.0 * (1.0 - (0.5 * angle).cos()) <= 0.0101);
+        }
+        let disc = corners(bowl, 0, &circle(100, 2.0, [0.0, 0.0]));
+        let region = triangulate(&[disc], &TOLERANCES, 10_000, &bowl).expect("a good region");
+        let exact = TAU / 3.0 * (5f64.powf(1.5) - 1.0);
+        assert!((area(&region) - exact).abs() < 5e-3 * exact, "{} {exact}", area(&region));
+        for triangle in &region.triangles {
+            let uv =
+                [0, 1].map(|k| triangle.iter().map(|&at| region.nodes[at as usize].uv[k]).sum::<f64>() / 3.0);
+            let plane = triangle.iter().map(|&at| region.nodes[at as usize].point.z).sum::<f64>() / 3.0;
+            // Distance along the surface's normal, to first order.
+            let slope = (1.0 + uv[0] * uv[0] + uv[1] * uv[1]).sqrt();
+            assert!((plane - bowl(uv[0], uv[1]).point.z) / slope < 0.0101);
+        }
+        assert!(region.triangles.len() < 3000, "{}", region.triangles.len());
+    }
+
+    #[test]
+    fn crossing_degenerate_and_too_many_are_told_apart() {
+        let bow_tie = corners(plane, 0, &[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]);
+        let result = triangulate(&[bow_tie], &TOLERANCES, 1000, &plane);
+        assert!(matches!(result, Err(RegionError::Crossing(_))), "{result:?}");
+        let line = corners(plane, 0, &[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]);
+        assert_eq!(triangulate(&[line], &TOLERANCES, 1000, &plane), Err(RegionError::Degenerate));
+        let nan = corners(plane, 0, &[[0.0, 0.0], [1.0, 0.0], [f64::NAN, 1.0]]);
+        assert!(triangulate(&[nan], &TOLERANCES, 1000, &plane).is_err());
+        assert_eq!(triangulate(&[], &TOLERANCES, 1000, &plane), Err(RegionError::Degenerate));
+        let disc = corners(bowl, 0, &circle(100, 2.0, [0.0, 0.0]));
+        assert_eq!(triangulate(&[disc], &TOLERANCES, 101, &bowl), Err(RegionError::TooMany));
+    }
+}

@@ -1,0 +1,117 @@
+//! Figures of a plan for the report.
+
+use serde::Serialize;
+
+use super::hold::Held;
+use super::layout::spline_of;
+use super::scope::face_name;
+use super::stretch::{SolvedGroup, Stretched};
+use crate::model::Model;
+use crate::ops::OperationError;
+use crate::ops::constrained_scale::measures::{REPORT_SAMPLES, quality, rigid_deviation};
+
+/// Figures of all faces with held loops.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Measures {
+    /// Stretched faces, in order.
+    pub faces: Vec<FaceMeasures>,
+    /// Groups of held loops.
+    pub groups: Vec<GroupMeasures>,
+}
+
+/// Figures of one stretched face. Lengths are in file units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FaceMeasures {
+    /// The face.
+    pub face: String,
+    /// Control points before and after.
+    pub control_points: [usize; 2],
+    /// How often the spans were bisected.
+    pub refinements: usize,
+    /// Smallest ratio of the new oriented area element to the plainly scaled one.
+    pub area_ratio_min: f64,
+    /// Greatest distance from the closest point of the plainly scaled surface, outside the held cells.
+    pub deviation_max: f64,
+    /// Root mean square of these distances.
+    pub deviation_rms: f64,
+    /// Greatest angle between the normals there, in degrees.
+    pub normal_angle_max_deg: f64,
+    /// Correlation of the Gaussian curvatures.
+    pub gaussian_correlation: Option<f64>,
+    /// Correlation of the mean curvatures.
+    pub mean_correlation: Option<f64>,
+    /// Ratio of the integrals of the squared principal curvatures.
+    pub bending_ratio: Option<f64>,
+}
+
+/// Figures of one group of held loops.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct GroupMeasures {
+    /// Its loops.
+    pub loops: Vec<LoopMeasures>,
+    /// Its normal after the scaling.
+    pub axis: [f64; 3],
+    /// Displacement that the solve chose, in file units.
+    pub shift: [f64; 3],
+    /// Whether loops were joined because they lie too near to each other.
+    pub merged: bool,
+    /// Relative residual of the stationarity conditions.
+    pub residual: f64,
+}
+
+/// Figures of one held loop.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LoopMeasures {
+    /// The loop.
+    pub held: String,
+    /// Its face.
+    pub face: String,
+    /// Greatest deviation from the rigid copy, relative to the loop's extent.
+    pub rigid_deviation: f64,
+}
+
+/// Deviation from the rigid copy above which the result is thrown away: a bug of ours.
+const RIGIDITY: f64 = 1e-12;
+
+/// Measures all stretched faces and held loops.
+pub(super) fn measure(model: &Model, held: &Held, stretched: &Stretched) -> Result<Measures, OperationError> {
+    let faces = stretched.faces.iter().map(|(&id, face)| {
+        let q = quality(face, REPORT_SAMPLES);
+        FaceMeasures {
+            face: face_name(model, id),
+            control_points: [face.points_before, face.surface.net().len()],
+            refinements: face.level,
+            area_ratio_min: face.compression.ratio,
+            deviation_max: q.deviation_max,
+            deviation_rms: q.deviation_rms,
+            normal_angle_max_deg: q.normal_angle_max.to_degrees(),
+            gaussian_correlation: q.gaussian_correlation,
+            mean_correlation: q.mean_correlation,
+            bending_ratio: q.bending_ratio,
+        }
+    });
+    let faces = faces.collect();
+    let mut groups = Vec::new();
+    for SolvedGroup { loops, group, residual } in &stretched.groups {
+        let mut measured = Vec::new();
+        for &(face, k) in loops {
+            let (id, contour, _) = &held.bases[&face].held[k];
+            let before = spline_of(model, face).expect("a face with held loops is a B-spline");
+            let after = &stretched.faces[&face].surface;
+            let deviation = rigid_deviation(before, after, &contour.points, &group.motion);
+            let (face, held) = (face_name(model, face), model.origins.loops[*id].to_string());
+            if deviation.is_nan() || deviation > RIGIDITY {
+                return Err(OperationError::RigidityLost { face, held, deviation });
+            }
+            measured.push(LoopMeasures { held, face, rigid_deviation: deviation });
+        }
+        groups.push(GroupMeasures {
+            loops: measured,
+            axis: group.motion.axis.into(),
+            shift: group.motion.shift().into(),
+            merged: group.merged,
+            residual: *residual,
+        });
+    }
+    Ok(Measures { faces, groups })
+}

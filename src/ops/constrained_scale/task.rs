@@ -1,0 +1,100 @@
+//! What the numeric core takes and gives.
+
+use super::cells::Mask;
+use super::fold::Compression;
+use super::motion::Motion;
+use super::scaling::Hold;
+use crate::geometry::nurbs::NurbsSurface;
+use crate::math::Point3;
+
+/// A closed polygon in the parameters of a face.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Contour {
+    /// Points in order; the closing side is implied.
+    pub points: Vec<[f64; 2]>,
+    /// By how much the true curve may miss the polygon, in `u` and in `v`.
+    pub margin: [f64; 2],
+}
+
+/// A loop whose inside keeps its shape.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeldLoop {
+    /// Its polygon.
+    pub contour: Contour,
+    /// Loops with the same number, on whatever face, move as one.
+    pub group: usize,
+    /// What is held; the first loop of a group decides.
+    pub hold: Hold,
+}
+
+/// One face with what is held on it.
+#[derive(Debug, Clone)]
+pub struct FaceTask<'a> {
+    /// Name for messages.
+    pub name: String,
+    /// Its surface.
+    pub surface: &'a NurbsSurface,
+    /// Held loops; without any the face is scaled plainly.
+    pub held: Vec<HeldLoop>,
+    /// The outer loop, where it is not the natural border.
+    pub outer: Option<Contour>,
+    /// Inner loops that follow the scaling.
+    pub scaled: Vec<Contour>,
+}
+
+/// A scaled face.
+#[derive(Debug, Clone)]
+pub struct ScaledFace {
+    /// The result: same degrees and domain as the input, knots refined.
+    pub surface: NurbsSurface,
+    /// The plainly scaled surface over the same knots.
+    pub plain: NurbsSurface,
+    /// Control points that moved rigidly.
+    pub held: Mask,
+    /// Control points before refinement.
+    pub points_before: usize,
+    /// Control points that were solved for.
+    pub free_points: usize,
+    /// How often the spans were bisected.
+    pub level: usize,
+    /// Strongest compression against the plainly scaled surface.
+    pub compression: Compression,
+}
+
+/// Held loops with one motion.
+#[derive(Debug, Clone)]
+pub struct Group {
+    /// Face and loop, by the caller's indices.
+    pub loops: Vec<(usize, usize)>,
+    /// Their motion.
+    pub motion: Motion,
+    /// Whether loops of different numbers were joined because they lie too near to each other.
+    pub merged: bool,
+}
+
+/// Faces scaled together.
+#[derive(Debug, Clone)]
+pub struct Scaled {
+    /// One for each task, in order.
+    pub faces: Vec<ScaledFace>,
+    /// Groups in the order of their first loops.
+    pub groups: Vec<Group>,
+    /// Greatest relative residual of the stationarity conditions: of the free points, and of the groups' motions.
+    pub residual: f64,
+}
+
+impl ScaledFace {
+    /// A face of which nothing is held.
+    pub(super) fn whole(surface: NurbsSurface) -> Self {
+        let (rows, columns) = surface.shape();
+        Self {
+            plain: surface.clone(),
+            surface,
+            held: Mask::empty(rows, columns),
+            points_before: rows * columns,
+            free_points: 0,
+            level: 0,
+            compression: Compression { ratio: 1.0, near: Point3::origin() },
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! Why an operation cannot be done on a part.
+
+use super::constrained_scale::ScaleError;
+
+/// An element that cannot take part, and why.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Obstacle {
+    /// Name of the record in the file: `#412`.
+    pub entity: String,
+    /// What it is: `cylinder`, or the entity's name when it was not understood.
+    pub kind: String,
+    /// Lower-case fragment.
+    pub reason: String,
+}
+
+/// The operation cannot be done; nothing was changed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum OperationError {
+    /// A face could not be scaled.
+    #[error(transparent)]
+    Scale(#[from] ScaleError),
+    /// Elements in the scope have no image under the motion that they would need.
+    #[error("{} cannot follow: {}", count(.obstacles), list(.obstacles))]
+    CannotFollow {
+        /// The elements.
+        obstacles: Vec<Obstacle>,
+    },
+    /// Faces next to the selected ones would be torn off.
+    #[error(
+        "faces next to the selected ones are not selected, and cannot follow: {} (next to {})",
+        .neighbours.join(", "), .faces.join(", ")
+    )]
+    NeighboursOutside {
+        /// Selected faces.
+        faces: Vec<String>,
+        /// Their neighbours.
+        neighbours: Vec<String>,
+    },
+    /// What is to be held matches no loop.
+    #[error("no inner loop to hold was found on {}", .faces.join(", "))]
+    NothingToHold {
+        /// Faces searched.
+        faces: Vec<String>,
+    },
+    /// A loop to be held is no inner loop of a selected B-spline face.
+    #[error("{entity} cannot be held: {reason}")]
+    NotHoldable {
+        /// Loop or edge.
+        entity: String,
+        /// Lower-case fragment.
+        reason: String,
+    },
+    /// A face hangs on a held loop and is scaled elsewhere.
+    #[error(
+        "face {face} is held at {held} and scaled at {scaled}; a face that is partly held cannot follow yet"
+    )]
+    PartlyHeld {
+        /// The face.
+        face: String,
+        /// A held loop or edge.
+        held: String,
+        /// An element that would scale.
+        scaled: String,
+    },
+    /// The loops of a face cannot be laid out in its parameters.
+    #[error("face {face}: its loops have no image in the parameters of its surface: {reason}")]
+    NoParameterLoops {
+        /// The face.
+        face: String,
+        /// Lower-case fragment.
+        reason: String,
+    },
+    /// A held loop lost its shape. This is our bug, caught before anything is written.
+    #[error(
+        "internal error: loop {held} of face {face} deviates from its rigid copy by {deviation:.3e} of its size"
+    )]
+    RigidityLost {
+        /// The face.
+        face: String,
+        /// The loop.
+        held: String,
+        /// Deviation relative to the loop's extent.
+        deviation: f64,
+    },
+}
+
+impl OperationError {
+    /// The stable code, `area.what-is-wrong`.
+    #[must_use]
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Scale(error) => error.code(),
+            Self::CannotFollow { .. } => "scale.cannot-follow",
+            Self::NeighboursOutside { .. } => "scale.neighbours-outside",
+            Self::NothingToHold { .. } => "scale.nothing-to-hold",
+            Self::NotHoldable { .. } => "scale.not-holdable",
+            Self::PartlyHeld { .. } => "scale.partly-held",
+            Self::NoParameterLoops { .. } => "scale.no-parameter-loops",
+            Self::RigidityLost { .. } => "internal.rigidity-lost",
+        }
+    }
+}
+
+fn count(obstacles: &[Obstacle]) -> String {
+    match obstacles.len() {
+        1 => "1 element".to_owned(),
+        n => format!("{n} elements"),
+    }
+}
+
+/// Obstacles that a message spells out; the rest is only counted.
+const LISTED: usize = 8;
+
+fn list(obstacles: &[Obstacle]) -> String {
+    let mut parts: Vec<String> =
+        obstacles.iter().take(LISTED).map(|o| format!("{} ({}): {}", o.entity, o.kind, o.reason)).collect();
+    if obstacles.len() > LISTED {
+        parts.push(format!("and {} more", obstacles.len() - LISTED));
+    }
+    parts.join("; ")
+}

@@ -1,0 +1,48 @@
+//! Numbers: text to value, and value to the shortest text that reads back to the same bits.
+//!
+//! [`format_real`] is the one function of the project that writes a real: its text is legal in
+//! ISO 10303-21 (a point is required, the exponent is an upper-case `E`) and in IGES.
+
+/// Value of a number in the spelling of ISO 10303-21, or with the liberties that [`syntax`](super::syntax) takes.
+/// `None` when the text is no number or its value is not finite.
+#[must_use]
+pub fn parse_real(text: &[u8]) -> Option<f64> {
+    // The number parser of the standard library also takes `inf` and `nan`, in which no digit occurs.
+    let text = std::str::from_utf8(text).ok()?;
+    let first = text.bytes().find(|byte| !matches!(byte, b'+' | b'-' | b'.'))?;
+    if !first.is_ascii_digit() {
+        return None;
+    }
+    text.parse().ok().filter(|value: &f64| value.is_finite())
+}
+
+/// Value of an integer; `None` beyond 64 bits.
+#[must_use]
+pub fn parse_integer(text: &[u8]) -> Option<i64> {
+    std::str::from_utf8(text).ok()?.parse().ok()
+}
+
+/// Shortest text that reads back to the same bits, with a point and an upper-case exponent: `1.`, `-0.5`, `1.E-7`.
+///
+/// # Panics
+/// When the value is not finite: neither format can say it, so it must have been refused before.
+#[must_use]
+pub fn format_real(value: f64) -> String {
+    assert!(value.is_finite(), "a value that is not finite cannot be written");
+    let mut buffer = zmij::Buffer::new();
+    let shortest = buffer.format_finite(value);
+    let (mantissa, exponent) = match shortest.split_once(['e', 'E']) {
+        Some((mantissa, exponent)) => (mantissa, Some(exponent)),
+        None => (shortest, None),
+    };
+    let mut text = String::with_capacity(shortest.len() + 2);
+    text.push_str(mantissa.strip_suffix(".0").unwrap_or(mantissa));
+    if !text.contains('.') {
+        text.push('.');
+    }
+    if let Some(exponent) = exponent {
+        text.push('E');
+        text.push_str(exponent.strip_prefix('+').unwrap_or(exponent));
+    }
+    text
+}

@@ -1,0 +1,280 @@
+//! Curves: requested from edges, surface curves, parameter curves and swept surfaces, then edited in
+//! place or appended.
+
+use super::super::exchange_structure::InstanceName;
+use super::compose::{self, Body, Inherited, Value};
+use super::request::{Coordinates, NewCurve, NewPlacement, NewVector, group_equal};
+use super::{LowerError, Lowering};
+use crate::brep::{CurveId, EdgeId};
+use crate::geometry::nurbs::NurbsCurve;
+use crate::geometry::{Curve, Curve2d};
+use crate::math::{Vector2, Vector3};
+use crate::model::ChangeSet;
+
+impl Lowering<'_> {
+    /// Requests the new curves of edges, behind a surface curve where the file has one.
+    pub(super) fn request_edge_curves(&mut self, changes: &ChangeSet) -> Result<(), LowerError> {
+        for (&edge, curve) in &changes.curves {
+            self.request_edge_curve(edge, curve)?;
+        }
+        Ok(())
+    }
+
+    fn request_edge_curve(&mut self, edge: EdgeId, new: &Curve) -> Result<(), LowerError> {
+        let user = super::instance_name(self.model.origins.edges[edge])?;
+        let curve = self.model.brep.edges[edge].curve;
+        let curve_name = super::instance_name(self.model.origins.curves[curve])?;
+        let (mut token, target) = self.reference(user, "edge_geometry")?;
+        if target != curve_name {
+            let behind = self.reference(target, "curve_3d")?;
+            if behind.1 != curve_name {
+                return Err(LowerError::Attribute { name: target, attribute: "curve_3d" });
+            }
+            token = behind.0;
+        }
+        let content = NewCurve::Space { old: self.old_curve(curve), new: new.clone() };
+        self.curves.add(curve_name, token, content);
+        Ok(())
+    }
+
+    fn old_curve(&self, curve: CurveId) -> Option<Curve> {
+        self.model.brep.curves[curve].read().cloned()
+    }
+
+    /// Requests the new curves of coedges in the parameters of their surfaces.
+    pub(super) fn request_pcurves(&mut self, changes: &ChangeSet) -> Result<(), LowerError> {
+        for (&coedge, new) in &changes.pcurves {
+            let Some(origin) = self.model.origins.pcurves[coedge] else { continue };
+            let pcurve = super::instance_name(origin)?;
+            let (_, representation) = self.reference(pcurve, "reference_to_curve")?;
+            let (token, target) = self.first_reference(representation, "items")?;
+            let old = self.model.brep.coedges[coedge].pcurve.clone();
+            self.curves.add(target, token, NewCurve::Plane { old, new: new.clone() });
+        }
+        Ok(())
+    }
+
+    /// Replaces curves that belong to no edge. All users follow: they asked for this curve by name.
+    pub(super) fn request_free_curves(&mut self, changes: &ChangeSet) -> Result<(), LowerError> {
+        for (&curve, new) in &changes.free_curves {
+            let name = super::instance_name(self.model.origins.curves[curve])?;
+            let content = NewCurve::Space { old: self.old_curve(curve), new: new.clone() };
+            self.edit_curve(name, &content)?;
+        }
+        Ok(())
+    }
+
+    /// Decides all curves.
+    pub(super) fn curves(&mut self) -> Result<(), LowerError> {
+        let all = self.curves.take().map_err(|name| LowerError::Conflict { name })?;
+        for of_one in all.chunk_by(|a, b| a.0 == b.0) {
+            let target = of_one[0].0;
+            let groups = group_equal(of_one);
+            if groups.len() == 1 && self.is_covered(target, of_one.len()) {
+                self.edit_curve(target, groups[0].0)?;
+                continue;
+            }
+            for (content, tokens) in groups {
+                let inherited = self.inherited_by_curve(target);
+                let new = match content {
+                    NewCurve::Space { new, .. } => self.append_curve(new, &inherited)?,
+                    NewCurve::Plane { new, .. } => self.append_curve2d(new, &inherited)?,
+                };
+                for token in tokens {
+                    self.repoint(token, target, new);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn edit_curve(&mut self, target: InstanceName, content: &NewCurve) -> Result<(), LowerError> {
+        match content {
+            NewCurve::Space { old, new } => self.edit_space_curve(target, old.as_ref(), new),
+            NewCurve::Plane { old, new } => self.edit_plane_curve(target, old.as_ref(), new),
+        }
+    }
+
+    fn edit_space_curve(
+        &mut self,
+        target: InstanceName,
+        old: Option<&Curve>,
+        new: &Curve,
+    ) -> Result<(), LowerError> {
+        match (old, new) {
+            (Some(Curve::Line { .. }), Curve::Line { origin, direction }) => {
+                self.request_line(target, Coordinates::Three(origin.coords.into()), vector3(direction))
+            }
+            (Some(Curve::Circle { frame: old, .. }), Curve::Circle { frame, radius }) => {
+                self.request_position(target, NewPlacement::Space { old: Some(*old), new: *frame })?;
+                self.edit_real(target, "radius", *radius)
+            }
+            (Some(Curve::Ellipse { frame: old, .. }), Curve::Ellipse { frame, semi_axis_1, semi_axis_2 }) => {
+                self.request_position(target, NewPlacement::Space { old: Some(*old), new: *frame })?;
+                self.edit_real(target, "semi_axis_1", *semi_axis_1)?;
+                self.edit_real(target, "semi_axis_2", *semi_axis_2)
+            }
+            (Some(Curve::Nurbs(old)), Curve::Nurbs(new)) if self.keeps_net(target, old, new) => {
+                self.request_net(target, &compose::euclidean(old.points()), &compose::euclidean(new.points()))
+            }
+            _ => {
+                let inherited = self.inherited_by_curve(target);
+                let body = self.curve_body(new, &inherited)?;
+                self.rewrite(target, &body)
+            }
+        }
+    }
+
+    fn edit_plane_curve(
+        &mut self,
+        target: InstanceName,
+        old: Option<&Curve2d>,
+        new: &Curve2d,
+    ) -> Result<(), LowerError> {
+        match (old, new) {
+            (Some(Curve2d::Line { .. }), Curve2d::Line { origin, direction }) => {
+                self.request_line(target, Coordinates::Two([origin.x, origin.y]), vector2(direction))
+            }
+            (Some(Curve2d::Nurbs(old)), Curve2d::Nurbs(new)) if self.keeps_net(target, old, new) => {
+                self.request_net(target, &compose::euclidean(old.points()), &compose::euclidean(new.points()))
+            }
+            _ => {
+                let inherited = self.inherited_by_curve(target);
+                let body = self.curve2d_body(new, &inherited)?;
+                self.rewrite(target, &body)
+            }
+        }
+    }
+
+    fn request_line(
+        &mut self,
+        target: InstanceName,
+        origin: Coordinates,
+        vector: NewVector,
+    ) -> Result<(), LowerError> {
+        let (token, point) = self.reference(target, "pnt")?;
+        self.points.add(point, token, origin);
+        let (token, direction) = self.reference(target, "dir")?;
+        self.vectors.add(direction, token, vector);
+        Ok(())
+    }
+
+    pub(super) fn request_position(
+        &mut self,
+        target: InstanceName,
+        content: NewPlacement,
+    ) -> Result<(), LowerError> {
+        let (token, placement) = self.reference(target, "position")?;
+        self.placements.add(placement, token, content);
+        Ok(())
+    }
+
+    /// Whether only the points of a spline differ, and the file lists as many as the model.
+    fn keeps_net<const H: usize>(
+        &self,
+        target: InstanceName,
+        old: &NurbsCurve<H>,
+        new: &NurbsCurve<H>,
+    ) -> bool {
+        old.knots() == new.knots()
+            && old.points().iter().zip(new.points()).all(|(a, b)| a[H - 1].to_bits() == b[H - 1].to_bits())
+            && self
+                .references(target, "control_points_list")
+                .is_some_and(|list| list.len() == new.points().len())
+    }
+
+    /// Requests new points for a net whose record stays; points that keep their bits are not asked for.
+    pub(super) fn request_net(
+        &mut self,
+        target: InstanceName,
+        old: &[Coordinates],
+        new: &[Coordinates],
+    ) -> Result<(), LowerError> {
+        let listed = self
+            .references(target, "control_points_list")
+            .ok_or(LowerError::Attribute { name: target, attribute: "control_points_list" })?;
+        for ((token, point), (old, new)) in listed.into_iter().zip(old.iter().zip(new)) {
+            if old != new {
+                self.points.add(point, token, *new);
+            }
+        }
+        Ok(())
+    }
+
+    /// Appends a curve in space with everything it refers to.
+    pub(super) fn append_curve(
+        &mut self,
+        curve: &Curve,
+        inherited: &Inherited,
+    ) -> Result<InstanceName, LowerError> {
+        let body = self.curve_body(curve, inherited)?;
+        self.append(&body)
+    }
+
+    fn append_curve2d(&mut self, curve: &Curve2d, inherited: &Inherited) -> Result<InstanceName, LowerError> {
+        let body = self.curve2d_body(curve, inherited)?;
+        self.append(&body)
+    }
+
+    fn curve_body(&mut self, curve: &Curve, inherited: &Inherited) -> Result<Body, LowerError> {
+        Ok(match curve {
+            Curve::Line { origin, direction } => {
+                let point = self.append_point(origin.coords.as_slice())?;
+                let vector = self.append_vector(&vector3(direction))?;
+                let [point, vector] = [point, vector].map(Value::Reference);
+                Body::simple("LINE", vec![inherited.name(), point, vector])
+            }
+            Curve::Circle { frame, radius } => {
+                let position = Value::Reference(self.append_frame(frame)?);
+                Body::simple("CIRCLE", vec![inherited.name(), position, Value::Real(*radius)])
+            }
+            Curve::Ellipse { frame, semi_axis_1, semi_axis_2 } => {
+                let position = Value::Reference(self.append_frame(frame)?);
+                let semi_axes = [semi_axis_1, semi_axis_2].map(|&length| Value::Real(length));
+                Body::simple("ELLIPSE", [vec![inherited.name(), position], semi_axes.to_vec()].concat())
+            }
+            Curve::Nurbs(spline) => {
+                let points = self.append_net(&compose::euclidean(spline.points()))?;
+                compose::spline_curve(spline, points, inherited)
+            }
+        })
+    }
+
+    fn curve2d_body(&mut self, curve: &Curve2d, inherited: &Inherited) -> Result<Body, LowerError> {
+        Ok(match curve {
+            Curve2d::Line { origin, direction } => {
+                let point = self.append_point(origin.coords.as_slice())?;
+                let vector = self.append_vector(&vector2(direction))?;
+                let [point, vector] = [point, vector].map(Value::Reference);
+                Body::simple("LINE", vec![inherited.name(), point, vector])
+            }
+            Curve2d::Ellipse { center, x, semi_axis_1, semi_axis_2, .. } => {
+                let position = Value::Reference(self.append_frame2(center, x)?);
+                let placed = vec![inherited.name(), position, Value::Real(*semi_axis_1)];
+                if semi_axis_1.to_bits() == semi_axis_2.to_bits() {
+                    return Ok(Body::simple("CIRCLE", placed));
+                }
+                Body::simple("ELLIPSE", [placed, vec![Value::Real(*semi_axis_2)]].concat())
+            }
+            Curve2d::Nurbs(spline) => {
+                let points = self.append_net(&compose::euclidean(spline.points()))?;
+                compose::spline_curve(spline, points, inherited)
+            }
+        })
+    }
+
+    /// Appends the points of a net.
+    pub(super) fn append_net(&mut self, points: &[Coordinates]) -> Result<Vec<InstanceName>, LowerError> {
+        points.iter().map(|point| self.append_point(point.as_slice())).collect()
+    }
+}
+
+pub(super) fn vector3(direction: &Vector3<f64>) -> NewVector {
+    let magnitude = direction.norm();
+    NewVector { direction: Coordinates::Three((direction / magnitude).into()), magnitude }
+}
+
+fn vector2(direction: &Vector2<f64>) -> NewVector {
+    let magnitude = direction.norm();
+    NewVector { direction: Coordinates::Two((direction / magnitude).into()), magnitude }
+}

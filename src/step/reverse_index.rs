@@ -1,0 +1,152 @@
+//! Who refers to whom, the other way round.
+//!
+//! One compressed table over the whole file, built in two passes over its text on demand; the file's
+//! own references stay where they are. References to names without record are not counted.
+
+use std::collections::BTreeSet;
+
+use memchr::memchr3;
+
+use super::exchange_structure::{ExchangeStructure, Instance, InstanceName};
+use super::{Code, syntax};
+use crate::diagnostic::Sink;
+use crate::source::Span;
+
+/// Users of each instance, by position in the file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ReverseIndex {
+    /// `users[starts[p]..starts[p + 1]]` use the instance at position `p`.
+    starts: Vec<u32>,
+    users: Vec<u32>,
+}
+
+impl ReverseIndex {
+    /// Builds the table. Linear in the file.
+    #[must_use]
+    pub fn build(structure: &ExchangeStructure) -> Self {
+        let count = structure.len() as usize;
+        let mut starts = vec![0_u32; count + 1];
+        for_each_use(structure, |target, _| starts[target as usize + 1] += 1);
+        for position in 0..count {
+            starts[position + 1] += starts[position];
+        }
+        let mut next = starts.clone();
+        let mut users = vec![0_u32; starts[count] as usize];
+        for_each_use(structure, |target, user| {
+            let slot = &mut next[target as usize];
+            users[*slot as usize] = user;
+            *slot += 1;
+        });
+        Self { starts, users }
+    }
+
+    /// Positions of the instances that refer to the instance at `position`, ascending, each once.
+    #[must_use]
+    pub fn users_at(&self, position: u32) -> &[u32] {
+        let position = position as usize;
+        match (self.starts.get(position), self.starts.get(position + 1)) {
+            (Some(&start), Some(&end)) => &self.users[start as usize..end as usize],
+            _ => &[],
+        }
+    }
+
+    /// Positions of the instances that refer to an instance, ascending, each once.
+    #[must_use]
+    pub fn users(&self, structure: &ExchangeStructure, name: InstanceName) -> &[u32] {
+        structure.position(name).map_or(&[], |position| self.users_at(position))
+    }
+
+    /// How many instances refer to an instance.
+    #[must_use]
+    pub fn count(&self, structure: &ExchangeStructure, name: InstanceName) -> usize {
+        self.users(structure, name).len()
+    }
+
+    /// What goes when the instances at the positions `removed` go: these, and transitively every instance that
+    /// some removed one refers to and no other. An instance that nobody used before always stays, and so does
+    /// one that an anchor exports.
+    #[must_use]
+    pub fn orphans(&self, structure: &ExchangeStructure, removed: &BTreeSet<u32>) -> BTreeSet<u32> {
+        let anchored: BTreeSet<u32> = anchored(structure);
+        let mut gone = removed.clone();
+        let mut pending: Vec<u32> = removed.iter().copied().collect();
+        while let Some(position) = pending.pop() {
+            let Some(instance) = structure.instance_at(position) else { continue };
+            for target in references(instance).filter_map(|(name, _)| structure.position(name)) {
+                let unused = self.users_at(target).iter().all(|user| *user == target || gone.contains(user));
+                if unused && !anchored.contains(&target) && gone.insert(target) {
+                    pending.push(target);
+                }
+            }
+        }
+        gone
+    }
+}
+
+/// Positions of the instances that anchors export.
+pub(super) fn anchored(structure: &ExchangeStructure) -> BTreeSet<u32> {
+    let names = structure.anchors().flat_map(|(_, item)| References { bytes: item, at: 0 });
+    names.filter_map(|(name, _)| structure.position(name)).collect()
+}
+
+/// Calls `found(target, user)` once for every pair, in the order of the users.
+fn for_each_use(structure: &ExchangeStructure, mut found: impl FnMut(u32, u32)) {
+    const NEVER: u32 = u32::MAX;
+    let mut last_user = vec![NEVER; structure.len() as usize];
+    for instance in structure.instances() {
+        let user = instance.position();
+        for target in references(instance).filter_map(|(name, _)| structure.position(name)) {
+            if last_user[target as usize] != user {
+                last_user[target as usize] = user;
+                found(target, user);
+            }
+        }
+    }
+}
+
+/// Reports every reference to a name that neither a record nor the reference section defines.
+pub fn unresolved_references(structure: &ExchangeStructure, sink: &mut dyn Sink) {
+    let external: BTreeSet<InstanceName> =
+        structure.references().filter_map(|(name, _)| InstanceName::parse(name)).collect();
+    for instance in structure.instances() {
+        for (target, span) in references(instance) {
+            if structure.position(target).is_none() && !external.contains(&target) {
+                let message = format!("refers to {target}, which the file does not define");
+                sink.report(Code::UnresolvedReference.note_on(instance.name(), span, message));
+            }
+        }
+    }
+}
+
+/// Every reference of an instance with its place, in the order of its text, repetitions included.
+pub fn references(instance: Instance<'_>) -> impl Iterator<Item = (InstanceName, Span)> {
+    let (start, end) = instance.body();
+    References { bytes: &instance.bytes()[..end], at: start }
+}
+
+/// The `#n` of a text, outside strings and comments.
+struct References<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl Iterator for References<'_> {
+    type Item = (InstanceName, Span);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            self.at += memchr3(b'#', b'\'', b'/', self.bytes.get(self.at..)?)?;
+            let start = self.at;
+            match self.bytes[start] {
+                b'#' => {
+                    self.at = syntax::digits_end(self.bytes, start + 1);
+                    if let Some(name) = InstanceName::parse(&self.bytes[start..self.at]) {
+                        return Some((name, syntax::span(start, self.at)));
+                    }
+                }
+                b'\'' => self.at = syntax::string_end(self.bytes, start)?,
+                _ => self.at = syntax::comment_end(self.bytes, start).unwrap_or(start + 1),
+            }
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Surfaces: ISO 10303-42 chapter 4.
+
+use std::f64::consts::FRAC_PI_2;
+
+use super::curve::{self, Trims, positive};
+use super::error::ReadError;
+use super::placement::{frame, point3, vector3};
+use super::scope::{Scope, entity_name};
+use super::spline::{Form, WrittenKnots, apply_weights, implied_knots};
+use crate::geometry::nurbs::{KnotVector, NurbsSurface};
+use crate::geometry::{Curve, Surface};
+use crate::step::entity::Entity;
+use crate::step::view::{EntityView, count, list, real, reference};
+use crate::step::{InstanceName, Parameter};
+
+/// Reads a surface.
+pub(super) fn read(scope: Scope<'_>, name: InstanceName) -> Result<Surface, ReadError> {
+    let view = scope.view(name)?;
+    match view.entity() {
+        Entity::Plane => Ok(Surface::Plane(frame(scope, view.reference("position")?)?)),
+        Entity::CylindricalSurface | Entity::SphericalSurface => round(scope, &view),
+        Entity::ConicalSurface => cone(scope, &view),
+        Entity::ToroidalSurface | Entity::DegenerateToroidalSurface => torus(scope, &view),
+        Entity::SurfaceOfLinearExtrusion => {
+            let direction = vector3(scope, view.reference("extrusion_axis")?)?;
+            Ok(Surface::LinearExtrusion { curve: swept(scope, &view)?, direction })
+        }
+        Entity::SurfaceOfRevolution => {
+            let frame = frame(scope, view.reference("axis_position")?)?;
+            Ok(Surface::Revolution { curve: swept(scope, &view)?, frame })
+        }
+        _ if view.is(Entity::BSplineSurface) => spline(scope, &view).map(Surface::Nurbs),
+        _ if view.is(Entity::Surface) => Err(ReadError::NotReadYet),
+        found => {
+            let found = found.name().to_owned();
+            Err(ReadError::WrongEntity { name, found, expected: Entity::Surface.name() })
+        }
+    }
+}
+
+fn round(scope: Scope<'_>, view: &EntityView<'_>) -> Result<Surface, ReadError> {
+    let [position, radius] = view.fields(["position", "radius"]);
+    let radius = positive(real(radius, "radius")?, "radius")?;
+    let frame = frame(scope, reference(position, "position")?)?;
+    Ok(match view.entity() {
+        Entity::SphericalSurface => Surface::Sphere { frame, radius },
+        _ => Surface::Cylinder { frame, radius },
+    })
+}
+
+fn cone(scope: Scope<'_>, view: &EntityView<'_>) -> Result<Surface, ReadError> {
+    let [position, radius, semi_angle] = view.fields(["position", "radius", "semi_angle"]);
+    let radius = real(radius, "radius")?;
+    if radius < 0.0 {
+        return Err(ReadError::NotPositive { attribute: "radius", value: radius });
+    }
+    let radians = real(semi_angle, "semi_angle")? * scope.radians;
+    if radians == 0.0 || radians.abs() >= FRAC_PI_2 {
+        return Err(ReadError::SemiAngle { radians });
+    }
+    let frame = frame(scope, reference(position, "position")?)?;
+    Ok(Surface::Cone { frame, radius, semi_angle: radians })
+}
+
+/// A torus; a degenerate one, which meets itself, has the same equation and is bounded by its faces.
+fn torus(scope: Scope<'_>, view: &EntityView<'_>) -> Result<Surface, ReadError> {
+    let [position, major, minor] = view.fields(["position", "major_radius", "minor_radius"]);
+    Ok(Surface::Torus {
+        frame: frame(scope, reference(position, "position")?)?,
+        major_radius: positive(real(major, "major_radius")?, "major_radius")?,
+        minor_radius: positive(real(minor, "minor_radius")?, "minor_radius")?,
+    })
+}
+
+fn swept(scope: Scope<'_>, view: &EntityView<'_>) -> Result<Box<Curve>, ReadError> {
+    let (name, _) = curve::resolve(scope, view.reference("swept_curve")?, Trims::Follow)?;
+    let curve = curve::read(scope, name).map_err(|source| ReadError::Basis {
+        attribute: "swept_curve",
+        name,
+        entity: scope.file.instance(name).map(entity_name).unwrap_or_default(),
+        source: Box::new(source),
+    })?;
+    Ok(Box::new(curve))
+}
+
+/// A B-spline surface of any form, with weights or without.
+fn spline(scope: Scope<'_>, view: &EntityView<'_>) -> Result<NurbsSurface, ReadError> {
+    let [u_degree, v_degree, net] = view.fields(["u_degree", "v_degree", "control_points_list"]);
+    let degrees = [count(u_degree, "u_degree")?, count(v_degree, "v_degree")?];
+    let mut points = Vec::new();
+    let (mut rows, mut columns) = (0, 0);
+    for row in list(net, "control_points_list")? {
+        let before = points.len();
+        for member in list(Some(row), "control_points_list")? {
+            let point = point3(scope, reference(Some(member), "control_points_list")?)?;
+            points.push([point.x, point.y, point.z, 1.0]);
+        }
+        let found = points.len() - before;
+        if rows == 0 {
+            columns = found;
+        }
+        if found != columns {
+            return Err(ReadError::RaggedNet { row: rows, expected: columns, found });
+        }
+        rows += 1;
+    }
+    let [knots_u, knots_v] = knots(view, degrees, [rows, columns])?;
+    if view.is(Entity::RationalBSplineSurface) {
+        let weights = view.list("weights_data")?.filter_map(|row| row.as_list()).flatten();
+        apply_weights(&mut points, weights.map(|weight: Parameter<'_>| weight.as_f64().unwrap_or(f64::NAN)))?;
+    }
+    Ok(NurbsSurface::new(knots_u, knots_v, points)?.clamped())
+}
+
+fn knots(
+    view: &EntityView<'_>,
+    degrees: [usize; 2],
+    counts: [usize; 2],
+) -> Result<[KnotVector; 2], ReadError> {
+    match Form::of(view) {
+        None => Err(ReadError::NotReadYet),
+        Some(Form::WithKnots) => {
+            let [mu, mv, ku, kv] =
+                view.fields(["u_multiplicities", "v_multiplicities", "u_knots", "v_knots"]);
+            let u = WrittenKnots {
+                multiplicities: list(mu, "u_multiplicities")?,
+                knots: list(ku, "u_knots")?,
+                direction: " in u",
+            };
+            let v = WrittenKnots {
+                multiplicities: list(mv, "v_multiplicities")?,
+                knots: list(kv, "v_knots")?,
+                direction: " in v",
+            };
+            Ok([u.read(degrees[0], counts[0])?, v.read(degrees[1], counts[1])?])
+        }
+        Some(form) => {
+            Ok([implied_knots(form, degrees[0], counts[0])?, implied_knots(form, degrees[1], counts[1])?])
+        }
+    }
+}

@@ -1,0 +1,231 @@
+//! Contexts of representations: units of length and plane angle, and uncertainty (ISO 10303-41, -43).
+//!
+//! Nothing is scaled here. A context that says no unit counts in millimetres and radians, with a warning.
+
+use std::collections::HashMap;
+
+use super::code::ModelCode;
+use super::error::ReadError;
+use super::scope::Scope;
+use crate::diagnostic::Sink;
+use crate::model::Context;
+use crate::step::InstanceName;
+use crate::step::entity::Entity;
+use crate::step::view::EntityView;
+use crate::units::{AngleUnit, LengthUnit, Tolerance};
+
+/// Units defined by units that are followed before the chain counts as a cycle: an inch is defined by a
+/// millimetre, nobody needs three steps.
+const MAX_NESTED_UNITS: usize = 8;
+
+/// The contexts that were asked for, each once.
+#[derive(Default)]
+pub(super) struct Contexts {
+    pub(super) all: Vec<Context>,
+    index: HashMap<InstanceName, usize>,
+    assumed: Option<usize>,
+}
+
+impl Contexts {
+    /// Index of the context of a record.
+    pub(super) fn of(&mut self, scope: Scope<'_>, name: InstanceName, sink: &mut dyn Sink) -> usize {
+        if let Some(&known) = self.index.get(&name) {
+            return known;
+        }
+        self.all.push(read(scope, name, sink));
+        self.index.insert(name, self.all.len() - 1);
+        self.all.len() - 1
+    }
+
+    /// Index of the context of what no representation holds: the file's first, or else millimetre and
+    /// radian.
+    pub(super) fn assumed(&mut self) -> usize {
+        if self.all.is_empty() {
+            self.all.push(Context {
+                length: LengthUnit::millimetre(),
+                angle: AngleUnit::radian(),
+                uncertainty: None,
+            });
+        }
+        *self.assumed.get_or_insert(0)
+    }
+}
+
+/// What a unit measures, in metres or radians.
+enum Unit {
+    Length(LengthUnit),
+    Angle(AngleUnit),
+    Other,
+}
+
+fn read(scope: Scope<'_>, name: InstanceName, sink: &mut dyn Sink) -> Context {
+    let mut length = None;
+    let mut angle = None;
+    let view = scope.view(name).ok();
+    let units = view.and_then(|view| view.references("units").ok());
+    for unit in units.into_iter().flatten() {
+        match unit_of(scope, unit) {
+            Ok(Unit::Length(unit)) => length = length.or(Some(unit)),
+            Ok(Unit::Angle(unit)) => angle = angle.or(Some(unit)),
+            Ok(Unit::Other) => {}
+            Err(error) => {
+                sink.report(ModelCode::UnknownUnit.at(scope.file, unit, format!("unit: {error}")));
+            }
+        }
+    }
+    let mut missing = |what: &str| {
+        sink.report(ModelCode::MissingUnit.at(
+            scope.file,
+            name,
+            format!("the context has no unit of {what}"),
+        ));
+    };
+    let length = length.unwrap_or_else(|| {
+        missing("length: millimetre is assumed");
+        LengthUnit::millimetre()
+    });
+    let angle = angle.unwrap_or_else(|| {
+        missing("plane angle: radian is assumed");
+        AngleUnit::radian()
+    });
+    let uncertainty = view.and_then(|view| uncertainty(scope, &view, &length));
+    Context { length, angle, uncertainty }
+}
+
+/// The first uncertainty that is a positive length, counted in the context's own unit.
+fn uncertainty(scope: Scope<'_>, context: &EntityView<'_>, length: &LengthUnit) -> Option<Tolerance> {
+    context.references("uncertainty").ok()?.find_map(|name| {
+        let view = scope.view(name).ok()?;
+        let value = view.real("value_component").ok()?;
+        let Ok(Unit::Length(unit)) = unit_of(scope, view.reference("unit_component").ok()?) else {
+            return None;
+        };
+        // Equal units must not round: most files count the uncertainty as they count lengths.
+        let factor =
+            if unit.metres.to_bits() == length.metres.to_bits() { 1.0 } else { unit.metres / length.metres };
+        Some(value * factor).filter(|v| v.is_finite() && *v > 0.0).map(Tolerance)
+    })
+}
+
+fn unit_of(scope: Scope<'_>, name: InstanceName) -> Result<Unit, ReadError> {
+    let view = scope.view_of(name, Entity::NamedUnit)?;
+    let is_length = view.is(Entity::LengthUnit);
+    if !is_length && !view.is(Entity::PlaneAngleUnit) {
+        return Ok(Unit::Other);
+    }
+    let (factor, written) = size(scope, name)?;
+    Ok(if is_length {
+        Unit::Length(LengthUnit { name: length_name(factor, &written), metres: factor })
+    } else {
+        Unit::Angle(AngleUnit { name: angle_name(factor, &written), radians: factor })
+    })
+}
+
+/// How many metres or radians a unit is, and the name that the file gives it.
+fn size(scope: Scope<'_>, name: InstanceName) -> Result<(f64, String), ReadError> {
+    let mut factor = 1.0;
+    let mut written = String::new();
+    let mut current = name;
+    for _ in 0..MAX_NESTED_UNITS {
+        let view = scope.view_of(current, Entity::NamedUnit)?;
+        if view.is(Entity::SiUnit) {
+            return Ok((checked(factor * si_prefix(&view)?)?, written));
+        }
+        if !view.is(Entity::ConversionBasedUnit) {
+            return Err(ReadError::NotReadYet);
+        }
+        if written.is_empty() {
+            written = view.text("name").trim().to_lowercase();
+        }
+        let Ok(measure) = scope.view_of(view.reference("conversion_factor")?, Entity::MeasureWithUnit) else {
+            return by_name(&written).map(|f| (f * factor, written.clone())).ok_or(ReadError::NotReadYet);
+        };
+        factor *= measure.real("value_component")?;
+        current = measure.reference("unit_component")?;
+    }
+    Err(ReadError::Cycle(name))
+}
+
+fn checked(factor: f64) -> Result<f64, ReadError> {
+    if factor.is_finite() && factor > 0.0 {
+        Ok(factor)
+    } else {
+        Err(ReadError::NotPositive { attribute: "conversion_factor", value: factor })
+    }
+}
+
+/// Units of well-known names whose measure cannot be read.
+fn by_name(name: &str) -> Option<f64> {
+    match name {
+        "inch" | "inches" | "in" => Some(0.0254),
+        "foot" | "feet" | "ft" => Some(0.3048),
+        "millimetre" | "millimeter" | "mm" => Some(1e-3),
+        "degree" | "degrees" | "deg" => Some(std::f64::consts::PI / 180.0),
+        _ => None,
+    }
+}
+
+/// SI prefixes and their powers of ten.
+const PREFIXES: [(&[u8], f64); 16] = [
+    (b"EXA", 1e18),
+    (b"PETA", 1e15),
+    (b"TERA", 1e12),
+    (b"GIGA", 1e9),
+    (b"MEGA", 1e6),
+    (b"KILO", 1e3),
+    (b"HECTO", 1e2),
+    (b"DECA", 1e1),
+    (b"DECI", 1e-1),
+    (b"CENTI", 1e-2),
+    (b"MILLI", 1e-3),
+    (b"MICRO", 1e-6),
+    (b"NANO", 1e-9),
+    (b"PICO", 1e-12),
+    (b"FEMTO", 1e-15),
+    (b"ATTO", 1e-18),
+];
+
+fn si_prefix(unit: &EntityView<'_>) -> Result<f64, ReadError> {
+    let Some(prefix) = unit.get("prefix").as_ref().and_then(|p| p.as_enum()) else { return Ok(1.0) };
+    let known = PREFIXES.iter().find(|(name, _)| name.eq_ignore_ascii_case(prefix));
+    known.map(|(_, factor)| *factor).ok_or(ReadError::NotReadYet)
+}
+
+/// Relative difference below which a unit counts as the one of a common name: files write the inch with
+/// six digits and more.
+const SAME_UNIT: f64 = 1e-6;
+
+fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= SAME_UNIT * b
+}
+
+fn length_name(metres: f64, written: &str) -> String {
+    let common = [
+        ("um", 1e-6),
+        ("mm", 1e-3),
+        ("cm", 1e-2),
+        ("dm", 1e-1),
+        ("m", 1.0),
+        ("km", 1e3),
+        ("inch", 0.0254),
+        ("ft", 0.3048),
+    ];
+    let name = common.iter().find(|(_, size)| same(metres, *size)).map(|(name, _)| *name);
+    match name {
+        Some(name) => name.to_owned(),
+        None if written.is_empty() => format!("{metres:e} m"),
+        None => written.to_owned(),
+    }
+}
+
+fn angle_name(radians: f64, written: &str) -> String {
+    if same(radians, 1.0) {
+        "rad".to_owned()
+    } else if same(radians, std::f64::consts::PI / 180.0) {
+        "deg".to_owned()
+    } else if written.is_empty() {
+        format!("{radians:e} rad")
+    } else {
+        written.to_owned()
+    }
+}

@@ -1,0 +1,12 @@
+//! Constrained scaling: the vectors b1 to b6 of its specification, its invariants, and its figures on car panels.
+
+#![allow(clippy::unwrap_used, reason = "a helper of a test fails the test when it cannot go on")]
+
+mod errors;
+mod invariants;
+mod models;
+mod panels;
+mod parts;
+mod plan;
+mod thin_solid;
+mod vectors;
