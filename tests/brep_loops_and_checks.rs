@@ -1,5 +1,7 @@
 //! Loops in the parameter plane and checks, on solids built by hand with known areas and known faults.
 
+#![expect(clippy::unwrap_used, reason = "builders of fixtures stop at what cannot be built")]
+
 use resurf::brep::check::{BoundKind, Finding, check};
 use resurf::brep::{
     Body, BodyKind, Brep, Coedge, Edge, EdgeId, Face, FaceId, Loop, LoopSampling, ParameterLoop, Shell,

@@ -94,10 +94,9 @@ pub enum ParameterLoopError {
 const MAX_ROUNDS: usize = 8;
 /// Greatest count of points of one coedge.
 const MAX_POINTS: usize = 1 << 14;
-/// Distance, in tolerances, from which on a walk along an edge asks for the globally closest point again.
-const LOST: f64 = 100.0;
-/// The same in parts of the surface's box, for edges that are further off than the tolerance says.
-const LOST_PART: f64 = 1e-3;
+/// Distance, in parts of the surface's box, below which a seeded projection is trusted whatever the
+/// tolerance says: far below any detail, far above rounding.
+const SURE_PART: f64 = 1e-6;
 
 /// The loops of a face in file order.
 ///
@@ -166,7 +165,7 @@ impl<'a> Walk<'a> {
             }
             _ => (None, 0.0),
         };
-        let lost = (LOST * sampling.tolerance).max(LOST_PART * size);
+        let lost = sampling.tolerance.max(SURE_PART * size);
         Self { surface, locator, periods: surface.periods(), sampling, lost, same_sense }
     }
 
@@ -273,7 +272,7 @@ impl<'a> Walk<'a> {
     fn project(&self, at: EdgePoint, seed: Option<(f64, f64)>) -> Place {
         let (u, v) = match (&self.locator, seed) {
             (Some(locator), Some(seed)) => {
-                let wrapped = self.into_domain(seed);
+                let wrapped = self.in_domain(seed);
                 let found = locator.closest_near(&at.point, wrapped, self.lost);
                 (found.u, found.v)
             }
@@ -294,7 +293,7 @@ impl<'a> Walk<'a> {
         self.place(at, u, v)
     }
 
-    fn into_domain(&self, (u, v): (f64, f64)) -> (f64, f64) {
+    fn in_domain(&self, (u, v): (f64, f64)) -> (f64, f64) {
         let ((u0, _), (v0, _)) = self.surface.domain();
         let wrap = |x: f64, start: f64, period: Option<f64>| match period {
             Some(p) if !(x >= start && x <= start + p) => start + (x - start).rem_euclid(p),
@@ -313,7 +312,7 @@ impl<'a> Walk<'a> {
     }
 
     fn place(&self, at: EdgePoint, u: f64, v: f64) -> Place {
-        let (wu, wv) = self.into_domain((u, v));
+        let (wu, wv) = self.in_domain((u, v));
         let d = self.surface.derivatives(wu, wv);
         let ((u0, u1), (v0, v1)) = self.surface.domain();
         // The whole parameter line through the point is shorter than the tolerance, as far as its speed tells.
