@@ -179,6 +179,11 @@ impl<'a> Instance<'a> {
         self.structure.index.records[self.position as usize]
     }
 
+    /// A cursor over a span between two parentheses of this instance.
+    pub(super) fn parameters_in(&self, inside: Span) -> Parameters<'a> {
+        Parameters::new(self.bytes(), inside, self.structure.index.comments)
+    }
+
     /// Position in file order.
     #[must_use]
     pub fn position(&self) -> u32 {

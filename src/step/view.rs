@@ -123,7 +123,7 @@ impl<'a> EntityView<'a> {
             }
         };
         if let Some(inside) = self.simple {
-            take(schema::attributes(self.entity), Parameters::new(self.instance.bytes(), inside));
+            take(schema::attributes(self.entity), self.instance.parameters_in(inside));
             return found;
         }
         for record in self.instance.records() {

@@ -90,7 +90,7 @@ fn coordinates<const N: usize>(
         let attribute = if entity == Entity::Direction { "direction_ratios" } else { "coordinates" };
         return numbers(scope, name, view.list(attribute)?).ok_or(ReadError::Coordinates(name));
     };
-    let mut parameters = Parameters::new(scope.file.source().bytes(), inside);
+    let mut parameters = instance.parameters_in(inside);
     let list = parameters.nth(1).and_then(|parameter| parameter.as_list());
     list.and_then(|list| numbers(scope, name, list)).ok_or(ReadError::Coordinates(name))
 }
