@@ -150,16 +150,18 @@ impl Document {
         step::to_model::to_model(&self.structure, sink)
     }
 
-    /// The byte edits that carry out a change set.
+    /// The byte edits that carry out a change set; the header gets its stamp when anything changes.
     ///
     /// # Errors
-    /// A lower-case fragment naming the entity that cannot be written.
-    pub fn lower(&self, _model: &Model, changes: &ChangeSet, _stamp: &Stamp) -> Result<Patch, LowerError> {
-        if changes.is_empty() {
-            return Patch::new(self.source().bytes().len(), Vec::new())
-                .map_err(|e| LowerError(e.to_string()));
+    /// [`LowerError`] naming the entity that cannot be written.
+    pub fn lower(&self, model: &Model, changes: &ChangeSet, stamp: &Stamp) -> Result<Patch, LowerError> {
+        let patch = step::lower::lower(&self.structure, model, changes)?;
+        if patch.is_empty() {
+            return Ok(patch);
         }
-        Err(LowerError("changes are not written yet".to_owned()))
+        let mut edits = patch.edits().to_vec();
+        edits.extend(step::edit::stamp(&self.structure, &stamp.time, &stamp.preprocessor));
+        Ok(Patch::new(self.source().bytes().len(), edits)?)
     }
 }
 
@@ -173,9 +175,15 @@ pub struct Stamp {
 }
 
 /// A change that cannot be written in the file's format.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct LowerError(pub String);
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum LowerError {
+    /// By the writer of STEP.
+    #[error(transparent)]
+    Step(#[from] step::lower::LowerError),
+    /// The header's stamp and an edit overlap.
+    #[error(transparent)]
+    Patch(#[from] crate::exchange::PatchError),
+}
 
 #[cfg(test)]
 mod tests {

@@ -1,6 +1,8 @@
 //! Laws of knot vectors and B-splines on random input: uneven and multiple knots, clamped or not, weights.
 //! Expected values are closed forms, definitions, or the same geometry before an exact change of form.
 
+#![expect(clippy::unwrap_used, reason = "builders of fixtures stop at what cannot be built")]
+
 use proptest::prelude::*;
 use resurf::geometry::nurbs::{
     GrevilleCollocation, KnotVector, NurbsCurve3, NurbsSurface, SurfaceLocator, Wrap, gram, interpolate_grid,

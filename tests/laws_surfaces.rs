@@ -1,6 +1,8 @@
 //! Laws of every kind of curve and surface: derivatives against differences, parameters of points,
 //! exact images under affine maps.
 
+#![expect(clippy::unwrap_used, reason = "builders of fixtures stop at what cannot be built")]
+
 use resurf::geometry::nurbs::{KnotVector, NurbsCurve3, NurbsSurface};
 use resurf::geometry::{Curve, Surface};
 use resurf::math::{Affine, Frame, Matrix3, Point2, Point3, Vector3, minimal_rotation};

@@ -1,6 +1,8 @@
 //! Reference vectors `k1` (knot insertion) and `k2` (degree elevation) of the scaling specification:
 //! numbers of another program, at the tolerances that come with them.
 
+#![expect(clippy::unwrap_used, reason = "builders of fixtures stop at what cannot be built")]
+
 use resurf::geometry::nurbs::{KnotVector, NurbsSurface};
 use resurf::math::Point3;
 use serde_json::Value;

@@ -66,7 +66,7 @@ fn add_bracket(records: &mut Records, product: Product) -> (Name, Name, Name) {
             let (a, b) = (1 << ((k + 1) % 3), 1 << ((k + 2) % 3));
             let base = usize::from(at_end) << k;
             // Counter-clockwise seen along +k; turned for the side that looks along -k.
-            let mut ring = vec![base, base | a, base | a | b, base | b];
+            let mut ring = [base, base | a, base | a | b, base | b];
             if !at_end {
                 ring.reverse();
             }

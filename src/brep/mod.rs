@@ -3,6 +3,7 @@
 //! Read-only once built. Knows nothing of files: where an element came from is the model's knowledge.
 //! Repairs nothing; `check` states facts.
 
+pub mod check;
 pub mod edge_samples;
 pub mod id;
 pub mod parameter_loop;

@@ -48,6 +48,8 @@ pub struct LoopPoint {
     pub t: f64,
     /// Point of the edge's curve.
     pub point: Point3<f64>,
+    /// Its distance from the surface at the parameters, in file units.
+    pub gap: f64,
 }
 
 /// A loop in the parameter plane.
@@ -92,10 +94,9 @@ pub enum ParameterLoopError {
 const MAX_ROUNDS: usize = 8;
 /// Greatest count of points of one coedge.
 const MAX_POINTS: usize = 1 << 14;
-/// Distance, in tolerances, from which on a walk along an edge asks for the globally closest point again.
-const LOST: f64 = 100.0;
-/// The same in parts of the surface's box, for edges that are further off than the tolerance says.
-const LOST_PART: f64 = 1e-3;
+/// Distance, in parts of the surface's box, below which a seeded projection is trusted whatever the
+/// tolerance says: far below any detail, far above rounding.
+const SURE_PART: f64 = 1e-6;
 
 /// The loops of a face in file order.
 ///
@@ -164,7 +165,7 @@ impl<'a> Walk<'a> {
             }
             _ => (None, 0.0),
         };
-        let lost = (LOST * sampling.tolerance).max(LOST_PART * size);
+        let lost = sampling.tolerance.max(SURE_PART * size);
         Self { surface, locator, periods: surface.periods(), sampling, lost, same_sense }
     }
 
@@ -181,7 +182,7 @@ impl<'a> Walk<'a> {
         }
         let mut points: Vec<LoopPoint> = Vec::new();
         let mut before: Option<(EdgeId, Vec<Place>)> = None;
-        let mut gap = 0.0_f64;
+        let (mut first, mut gap) = (None, 0.0_f64);
         for coedge in order {
             let use_of = &brep.coedges[coedge];
             let edge = use_of.edge;
@@ -200,21 +201,30 @@ impl<'a> Walk<'a> {
                 self.join(last, &mut places, *last_edge == edge);
             }
             gap = places.iter().fold(gap, |m, p| m.max(p.gap));
+            first = first.or_else(|| places.first().copied());
             // A pole stands twice, with the parameter of the way in and of the way out.
             let count = places.len();
             let keep = if places[count - 1].is_singular() { count } else { count - 1 };
             points.extend(places[..keep].iter().map(|p| p.on(coedge)));
             before = Some((edge, places));
         }
-        let winding = match (&before, points.first()) {
-            (Some((_, places)), Some(first)) => {
-                let last = places[places.len() - 1];
-                let whole = |d: f64, period: Option<f64>| period.map_or(0.0, |p| p * (d / p).round());
-                (whole(last.u - first.u, self.periods.0), whole(last.v - first.v, self.periods.1))
-            }
+        let winding = match (first, before.as_ref().and_then(|(_, places)| places.last())) {
+            (Some(first), Some(last)) => self.winding(&first, last),
             _ => (0.0, 0.0),
         };
         Ok(ParameterLoop { of: id, points, winding, gap })
+    }
+
+    /// Whole periods between the ends of a walk; none where it ends at a pole, whose line closes it.
+    fn winding(&self, first: &Place, last: &Place) -> (f64, f64) {
+        let whole = |way: f64, period: Option<f64>, pole: bool| match period {
+            Some(p) if !pole => p * (way / p).round(),
+            _ => 0.0,
+        };
+        (
+            whole(last.u - first.u, self.periods.0, first.singular.0 || last.singular.0),
+            whole(last.v - first.v, self.periods.1, first.singular.1 || last.singular.1),
+        )
     }
 
     /// Parameters of points along a coedge, continuous from one to the next.
@@ -262,7 +272,7 @@ impl<'a> Walk<'a> {
     fn project(&self, at: EdgePoint, seed: Option<(f64, f64)>) -> Place {
         let (u, v) = match (&self.locator, seed) {
             (Some(locator), Some(seed)) => {
-                let wrapped = self.into_domain(seed);
+                let wrapped = self.in_domain(seed);
                 let found = locator.closest_near(&at.point, wrapped, self.lost);
                 (found.u, found.v)
             }
@@ -283,7 +293,7 @@ impl<'a> Walk<'a> {
         self.place(at, u, v)
     }
 
-    fn into_domain(&self, (u, v): (f64, f64)) -> (f64, f64) {
+    fn in_domain(&self, (u, v): (f64, f64)) -> (f64, f64) {
         let ((u0, _), (v0, _)) = self.surface.domain();
         let wrap = |x: f64, start: f64, period: Option<f64>| match period {
             Some(p) if !(x >= start && x <= start + p) => start + (x - start).rem_euclid(p),
@@ -302,7 +312,7 @@ impl<'a> Walk<'a> {
     }
 
     fn place(&self, at: EdgePoint, u: f64, v: f64) -> Place {
-        let (wu, wv) = self.into_domain((u, v));
+        let (wu, wv) = self.in_domain((u, v));
         let d = self.surface.derivatives(wu, wv);
         let ((u0, u1), (v0, v1)) = self.surface.domain();
         // The whole parameter line through the point is shorter than the tolerance, as far as its speed tells.
@@ -380,13 +390,29 @@ impl<'a> Walk<'a> {
     }
 }
 
+impl ParameterLoop {
+    /// Area enclosed in the parameter plane, positive when the polygon runs counter-clockwise; `None` for a
+    /// loop without an inside: one that runs round the surface, or has no points.
+    #[must_use]
+    pub fn signed_area(&self) -> Option<f64> {
+        if self.points.is_empty() || self.winding != (0.0, 0.0) {
+            return None;
+        }
+        let first = &self.points[0];
+        let cross = |a: &LoopPoint, b: &LoopPoint| {
+            (a.u - first.u) * (b.v - first.v) - (b.u - first.u) * (a.v - first.v)
+        };
+        Some(0.5 * self.points.windows(2).map(|w| cross(&w[0], &w[1])).sum::<f64>())
+    }
+}
+
 impl Place {
     fn is_singular(&self) -> bool {
         self.singular.0 || self.singular.1
     }
 
     fn on(&self, coedge: CoedgeId) -> LoopPoint {
-        LoopPoint { u: self.u, v: self.v, coedge, t: self.at.t, point: self.at.point }
+        LoopPoint { u: self.u, v: self.v, coedge, t: self.at.t, point: self.at.point, gap: self.gap }
     }
 }
 

@@ -84,7 +84,7 @@ impl Curve {
         match self {
             Self::Line { origin, direction } => {
                 let image = map.vector(direction);
-                if !(image.norm() > SAME * map.linear.norm() * direction.norm()) {
+                if vanishes(image.norm(), SAME * map.linear.norm() * direction.norm()) {
                     return Err(NotRepresentable::Degenerate { kind: self.kind() });
                 }
                 Ok((Self::Line { origin: map.point(origin), direction: image }, 0.0))
@@ -96,6 +96,11 @@ impl Curve {
             Self::Nurbs(curve) => Ok((Self::Nurbs(curve.transformed(map)), 0.0)),
         }
     }
+}
+
+/// Whether a length is not above a bound, or not a number.
+fn vanishes(length: f64, bound: f64) -> bool {
+    length.is_nan() || length <= bound
 }
 
 /// Image of a conic by its conjugate radii `A = M x a`, `B = M y b`: `A cos t + B sin t` has its axes at `t0`
@@ -114,7 +119,7 @@ fn conic_image(
     let (sin, cos) = shift.sin_cos();
     let (first, second) = (ca * cos + cb * sin, cb * cos - ca * sin);
     let (r1, r2) = (first.norm(), second.norm());
-    if !(r1.min(r2) > SAME * map.linear.norm() * a.max(b)) {
+    if vanishes(r1.min(r2), SAME * map.linear.norm() * a.max(b)) {
         return Err(NotRepresentable::Degenerate { kind });
     }
     let frame = Frame::from_axis(map.point(&frame.origin), first.cross(&second), Some(first))
@@ -197,7 +202,7 @@ impl Surface {
             }
             Self::LinearExtrusion { curve, direction } => {
                 let direction = map.vector(direction);
-                if !(direction.norm() > 0.0) {
+                if vanishes(direction.norm(), 0.0) {
                     return Err(NotRepresentable::Degenerate { kind });
                 }
                 Ok(Self::LinearExtrusion { curve: Box::new(curve.transformed(map)?), direction })
@@ -271,7 +276,7 @@ impl Curve2d {
         match self {
             Self::Line { origin, direction } => {
                 let direction = map.linear * direction;
-                if !(direction.norm() > 0.0) {
+                if vanishes(direction.norm(), 0.0) {
                     return Err(NotRepresentable::Degenerate { kind: "line" });
                 }
                 Ok(Self::Line { origin: map.point(origin), direction })

@@ -21,6 +21,7 @@ pub struct Job {
     #[serde(default)]
     pub name: String,
     /// Parts: paths or globs (`*`, `?`, `[a-z]`, `{a,b}`, `**`), relative to the job file. Each match is one part.
+    #[serde(deserialize_with = "at_least_one")]
     #[schemars(length(min = 1))]
     pub inputs: Vec<String>,
     /// Where each result goes, relative to the job file; `{dir}`, `{stem}` and `{ext}` are those of the input.
@@ -34,10 +35,26 @@ pub struct Job {
     /// Other programs that must accept the result.
     #[serde(default)]
     pub validate: ValidateSettings,
-    /// Operations, one after the other.
-    #[serde(default)]
+    /// The operation; none passes the parts through. More than one in a job is not there yet.
+    #[serde(default, deserialize_with = "at_most_one")]
     #[schemars(length(max = 1))]
     pub operation: Vec<Operation>,
+}
+
+fn at_least_one<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Vec<String>, D::Error> {
+    let inputs = Vec::<String>::deserialize(deserializer)?;
+    if inputs.is_empty() { Err(de::Error::custom("a job needs an input")) } else { Ok(inputs) }
+}
+
+fn at_most_one<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Vec<Operation>, D::Error> {
+    let operations = Vec::deserialize(deserializer)?;
+    if operations.len() > 1 {
+        let count = operations.len();
+        return Err(de::Error::custom(format!(
+            "{count} operations in one job; one is what this version does"
+        )));
+    }
+    Ok(operations)
 }
 
 /// Version of the job format.
@@ -201,7 +218,9 @@ impl<'de> Deserialize<'de> for Operation {
                 let rest = de::value::MapAccessDeserializer::new(map);
                 match kind {
                     OperationKind::ConstrainedScale => {
-                        Deserialize::deserialize(rest).map(|o| Operation::ConstrainedScale(Box::new(o)))
+                        let scale = ConstrainedScale::deserialize(rest)?;
+                        scale.check().map_err(de::Error::custom)?;
+                        Ok(Operation::ConstrainedScale(Box::new(scale)))
                     }
                 }
             }
@@ -243,6 +262,17 @@ pub struct ConstrainedScale {
     /// The energy that is made small.
     #[serde(default)]
     pub energy: Energy,
+}
+
+impl ConstrainedScale {
+    /// Refuses keys that contradict each other.
+    fn check(&self) -> Result<(), &'static str> {
+        match (self.mode, self.held_axes.is_empty()) {
+            (HoldMode::Axes, true) => Err("`mode = \"axes\"` needs `held_axes`, such as [\"x\", \"y\"]"),
+            (HoldMode::Rigid | HoldMode::Pinned, false) => Err("`held_axes` needs `mode = \"axes\"`"),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// Three positive factors.
@@ -309,22 +339,17 @@ pub enum Energy {
 }
 
 /// Order of continuity at the natural border.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, JsonSchema)]
 #[serde(try_from = "u64")]
 #[schemars(with = "u64", extend("enum" = [0, 1, 2]))]
 pub enum Continuity {
     /// 0.
     Position,
     /// 1.
+    #[default]
     Tangent,
     /// 2.
     Curvature,
-}
-
-impl Default for Continuity {
-    fn default() -> Self {
-        Self::Tangent
-    }
 }
 
 impl TryFrom<u64> for Continuity {

@@ -104,6 +104,15 @@ pub fn refuse(verdicts: &[Verdict]) -> Result<(), PartError> {
     }
 }
 
+/// Where FreeCAD counts other faces than we do. Assemblies are left out: it counts each use of a part.
+pub fn other_counts(verdicts: &[Verdict], model: &Model) -> impl Iterator<Item = String> {
+    let ours = model.brep.faces.len() as u64;
+    let single = model.occurrences.is_empty();
+    let counted = verdicts.iter().filter(move |v| single && v.validator == Validator::FreeCad);
+    let other = counted.filter_map(|v| v.figures.faces).filter(move |&faces| faces != ours);
+    other.map(move |faces| format!("FreeCAD counts {faces} faces where the file has {ours}"))
+}
+
 fn request<'a>(file: &'a Path, scratch: &'a Path, timeout: Duration) -> Request<'a> {
     Request { file, scratch, timeout, program: None }
 }

@@ -140,14 +140,18 @@ fn matches(pattern: &str, folder: &Path) -> Result<Vec<PathBuf>, PlanError> {
 const DEPTH: usize = 64;
 
 fn walk(root: &Path, depth: usize, glob: &GlobMatcher) -> Vec<PathBuf> {
+    let here = Path::new(".");
+    let root = if root.as_os_str().is_empty() { here } else { root };
     let entries = walkdir::WalkDir::new(root).max_depth(depth).follow_links(true).into_iter();
     let files = entries.filter_map(Result::ok).filter(|entry| entry.file_type().is_file());
     let below = |path: &Path| path.strip_prefix(root).is_ok_and(|rest| glob.is_match(rest));
-    files.map(walkdir::DirEntry::into_path).filter(|path| below(path)).collect()
+    let found = files.map(walkdir::DirEntry::into_path).filter(|path| below(path));
+    found.map(|path| path.strip_prefix(here).map(Path::to_path_buf).unwrap_or(path)).collect()
 }
 
 fn nearest_file(path: &Path, name: &str) -> Option<String> {
-    let folder = std::fs::read_dir(path.parent()?).ok()?;
+    let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = std::fs::read_dir(parent).ok()?;
     let mut names: Vec<String> = folder.filter_map(|e| e.ok()?.file_name().into_string().ok()).collect();
     names.sort();
     super::nearest::nearest(name, names.iter().map(String::as_str)).map(str::to_owned)

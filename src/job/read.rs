@@ -116,3 +116,63 @@ fn toml_value(value: &toml::Spanned<toml::de::DeValue<'_>>) -> Result<Node, JobF
     };
     Ok(Node { span, value })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::file::{Hold, LengthSetting, Operation};
+    use crate::units::Length;
+
+    const HEAD: &str = "version = 1\ninputs = [\"a.step\"]\noutput = \"b.step\"\n";
+
+    fn refused(rest: &str) -> (String, String) {
+        let text = format!("{HEAD}{rest}");
+        let error = read(&text, Syntax::Toml).expect_err("a job that is refused");
+        (text[error.span.clone()].to_owned(), error.to_string())
+    }
+
+    #[test]
+    fn errors_stand_at_the_innermost_place() {
+        let scale = "[[operation]]\nkind = \"constrained_scale\"\n";
+        let cases = [
+            ("also = [\"stl\", \"obj\"]", "\"obj\"", "unknown value `obj`; known are `stl`, `off`"),
+            ("[validate]\nwiht = []", "wiht", "unknown key `wiht`; did you mean `with`?"),
+            ("[validate]\ntimeout = 0", "0", "0 is not a time"),
+            (&format!("{scale}factors = [1, 2]"), "[1, 2]", "invalid length 2"),
+            (&format!("{scale}factors = [1, 0, 2]"), "[1, 0, 2]", "0 is not a factor"),
+            (
+                &format!("{scale}factors = [1,1,1]\nhold = [{{ loops = \"outer\" }}]"),
+                "\"outer\"",
+                "unknown value",
+            ),
+            (&format!("{scale}factors = [1,1,1]\nhold = [{{}}]"), "{}", "exactly one of the keys"),
+            (&format!("{scale}factors = [1,1,1]\nface = \"1042\""), "\"1042\"", "not an instance name"),
+            (&format!("{scale}factors = [1,1,1]\nface = {{ colour = \"red\" }}"), "\"red\"", "not a colour"),
+            (&format!("{scale}factors = [1,1,1]\nface = {{}}"), "{}", "an empty selector"),
+            (&format!("{scale}factors = [1,1,1]\ncontinuity = 3"), "3", "expected 0, 1 or 2"),
+            ("a = \u{1}", "\u{1}", ""),
+        ];
+        for (rest, marked, message) in cases {
+            let (found, said) = refused(rest);
+            assert_eq!(found, marked, "{rest}: {said}");
+            assert!(said.contains(message), "{rest}: {said}");
+        }
+    }
+
+    #[test]
+    fn both_syntaxes_give_the_same_job() {
+        let toml = format!(
+            "{HEAD}[[operation]]\nfactors = [1, 2.5, 3]\ncenter = [\"1 mm\", 2, 0]\nhold = [{{ edge = \"#7\" }}]\n\
+             kind = \"constrained_scale\"\nface = [\"#1\", {{ near = [0, 0, 1] }}]\n"
+        );
+        let json = "{\"version\": 1, \"inputs\": [\"a.step\"], \"output\": \"b.step\", \"operation\": [{\
+             \"factors\": [1, 2.5, 3], \"center\": [\"1 mm\", 2, 0], \"hold\": [{\"edge\": \"#7\"}],\
+             \"kind\": \"constrained_scale\", \"face\": [\"#1\", {\"near\": [0, 0, 1]}]}]}";
+        let job = read(&toml, Syntax::Toml).expect("TOML");
+        assert_eq!(job, read(json, Syntax::Json).expect("JSON"));
+        let Operation::ConstrainedScale(scale) = &job.operation[0];
+        assert_eq!(scale.factors.0, [1.0, 2.5, 3.0]);
+        assert_eq!(scale.hold, [Hold::Edge(7)]);
+        assert_eq!(scale.center.expect("a centre")[0], LengthSetting(Length::Metres(1e-3)));
+    }
+}

@@ -92,7 +92,10 @@ fn go(job: &Job, part: &Part, mode: Mode, stamp: &Stamp, report: &mut PartReport
         sides = side_files(job, part, model, report)?;
         let judged = judge::judge(&job.validate, staged.path(), model, None)?;
         report.validators = judged.verdicts;
-        report.losses.extend(judged.unasked.into_iter().map(unasked));
+        report.losses.extend(judged.unasked.into_iter().map(|text| warning("validate.not-asked", text)));
+        report.losses.extend(
+            judge::other_counts(&report.validators, model).map(|text| warning("validate.face-count", text)),
+        );
         judge::refuse(&report.validators)?;
     }
     for side in sides {
@@ -177,9 +180,9 @@ fn side_files(
     Ok(staged)
 }
 
-fn unasked(message: String) -> DiagnosticReport {
+fn warning(code: &str, message: String) -> DiagnosticReport {
     DiagnosticReport {
-        code: "validate.not-asked".to_owned(),
+        code: code.to_owned(),
         severity: "warning".to_owned(),
         entity: None,
         line: None,

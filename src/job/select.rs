@@ -161,6 +161,9 @@ fn no_match(condition: &Condition<'_>, faces: &[FaceId]) -> SelectError {
     SelectError::NoMatch { what: condition.what.clone(), nearest }
 }
 
+/// The words that a face offers for one key.
+type NamesOf = fn(&Model, FaceId) -> Vec<String>;
+
 fn list<'a>(model: &'a Model, conditions: &Conditions) -> Result<Vec<Condition<'a>>, SelectError> {
     let mut list = Vec::new();
     if let Some(wanted) = conditions.surface {
@@ -178,7 +181,7 @@ fn list<'a>(model: &'a Model, conditions: &Conditions) -> Result<Vec<Condition<'
             offers: Box::new(move |face| model.colour_of(face).map(|c| hex(bytes(c))).into_iter().collect()),
         });
     }
-    let names: [(&str, &Option<String>, fn(&Model, FaceId) -> Vec<String>); 3] = [
+    let names: [(&str, &Option<String>, NamesOf); 3] = [
         ("product", &conditions.product, product_names),
         ("layer", &conditions.layer, layers),
         ("name", &conditions.name, face_names),

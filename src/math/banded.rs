@@ -74,7 +74,7 @@ impl Banded {
                 }
             }
             let value = *self.at(pivot, k);
-            if !(value.abs() > SINGULAR * greatest) {
+            if value.is_nan() || value.abs() <= SINGULAR * greatest {
                 return Err(SingularBand { row: k });
             }
             let last = self.last_column(k);

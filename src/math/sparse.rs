@@ -3,11 +3,7 @@
 //! Assembly is sprs' (triplets, Kronecker products); the factor is faer's sequential sparse Cholesky with
 //! an approximate minimum degree ordering. Deterministic.
 
-use faer::Side;
-use faer::linalg::solvers::SolveCore;
-use faer::mat::MatMut;
-use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use resurf_cholesky::{Factor, FactorError, Triangle};
 use sprs::CsMat;
 
 /// The matrix has no Cholesky factor in double precision.
@@ -39,7 +35,7 @@ pub enum SingularSystem {
 #[derive(Debug, Clone)]
 pub struct SymmetricFactor {
     size: usize,
-    factor: Option<Llt<usize, f64>>,
+    factor: Option<Factor>,
 }
 
 impl SymmetricFactor {
@@ -58,13 +54,12 @@ impl SymmetricFactor {
         // A symmetric matrix is its own transpose, so that compressed rows serve as compressed columns,
         // of which the upper triangle is then the lower one of the rows.
         let indptr = matrix.proper_indptr();
-        let pattern = SymbolicSparseColMatRef::new_checked(rows, rows, &indptr, None, matrix.indices());
-        let side = if matrix.is_csr() { Side::Upper } else { Side::Lower };
-        let symbolic =
-            SymbolicLlt::try_new(pattern, side).map_err(|_| SingularSystem::TooLarge { size: rows })?;
-        let values = SparseColMatRef::new(pattern, matrix.data());
-        let factor = Llt::try_new_with_symbolic(symbolic, values, side)
-            .map_err(|_| SingularSystem::NotPositiveDefinite { size: rows })?;
+        let triangle = if matrix.is_csr() { Triangle::Upper } else { Triangle::Lower };
+        let factor = Factor::new(rows, &indptr, matrix.indices(), matrix.data(), triangle);
+        let factor = factor.map_err(|error| match error {
+            FactorError::NotPositiveDefinite => SingularSystem::NotPositiveDefinite { size: rows },
+            FactorError::TooLarge => SingularSystem::TooLarge { size: rows },
+        })?;
         Ok(Self { size: rows, factor: Some(factor) })
     }
 
@@ -83,10 +78,7 @@ impl SymmetricFactor {
             assert!(columns.is_empty(), "a system of size 0 has no right side");
             return;
         };
-        assert_eq!(columns.len() % self.size, 0, "right sides are whole columns");
-        let count = columns.len() / self.size;
-        let right = MatMut::from_column_major_slice_mut(columns, self.size, count);
-        factor.solve_in_place_with_conj(faer::Conj::No, right);
+        factor.solve(columns);
     }
 }
 

@@ -71,3 +71,50 @@ pub fn remove(structure: &ExchangeStructure, positions: impl IntoIterator<Item =
     let spans = positions.into_iter().filter_map(|position| structure.instance_at(position));
     spans.map(|instance| Edit::remove(with_line(bytes, instance.span()))).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exchange::Patch;
+    use crate::source::Source;
+
+    fn read(text: &str) -> ExchangeStructure {
+        ExchangeStructure::parse(Source::new(text.into()).expect("small"), &mut Vec::new())
+    }
+
+    fn patched(text: &str, edits: Vec<Edit>) -> String {
+        let patch = Patch::new(text.len(), edits).expect("disjoint");
+        String::from_utf8(patch.apply(text.as_bytes())).expect("ASCII stays ASCII")
+    }
+
+    #[test]
+    fn only_time_and_preprocessor_are_stamped() {
+        let text =
+            "ISO-10303-21;HEADER;FILE_NAME('n','old',('a'),\n('o'),'p','s','x');ENDSEC;END-ISO-10303-21;";
+        let edits = stamp(&read(text), "2026-01-02T03:04:05", "it's");
+        let expected = text.replace("'old'", "'2026-01-02T03:04:05'").replace("'p'", "'it''s'");
+        assert_eq!(patched(text, edits), expected);
+    }
+
+    #[test]
+    fn records_go_with_their_lines_and_come_on_lines_of_their_own() {
+        let file = |data: &str| {
+            format!("ISO-10303-21;\r\nHEADER;\r\nENDSEC;\r\nDATA;\r\n{data}ENDSEC;\r\nEND-ISO-10303-21;\r\n")
+        };
+        let text = file("#1=A();\r\n  #2=B(\r\n1);  \r\n#3=C(); #4=D();\r\n");
+        let structure = read(&text);
+        let edits = remove(&structure, [1, 3]);
+        assert_eq!(patched(&text, edits), file("#1=A();\r\n#3=C(); \r\n"));
+        let edits = append(&structure, vec!["#5=E();".into(), "#6=F();".into()]).expect("a data section");
+        let expected = file("#1=A();\r\n  #2=B(\r\n1);  \r\n#3=C(); #4=D();\r\n#5=E();\r\n#6=F();\r\n");
+        assert_eq!(patched(&text, edits), expected);
+    }
+
+    #[test]
+    fn new_records_stand_before_endsec_of_the_last_data_section() {
+        let text = "ISO-10303-21;HEADER;ENDSEC;DATA;#1=A();ENDSEC;DATA;#2=B();ENDSEC;END-ISO-10303-21;";
+        let edits = append(&read(text), vec!["#3=C();".into()]).expect("a data section");
+        assert_eq!(patched(text, edits), text.replace("#2=B();", "#2=B();#3=C();"));
+        assert_eq!(append(&read("ISO-10303-21;END-ISO-10303-21;"), vec!["#3=C();".into()]), None);
+    }
+}

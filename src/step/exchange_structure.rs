@@ -9,7 +9,7 @@
 //! its scope.
 
 use super::index::{self, Index, RecordSpan};
-use super::parameter::{self, Parameters};
+use super::parameter::{self, Comments, Parameters};
 use super::section::{Entry, Section, SectionKind};
 use super::syntax;
 use crate::diagnostic::Sink;
@@ -23,18 +23,10 @@ impl InstanceName {
     /// Reads `#12`, leading zeros allowed; `None` when it is no number or exceeds 64 bits.
     #[must_use]
     pub fn parse(text: &[u8]) -> Option<Self> {
-        let digits = text.strip_prefix(b"#")?;
-        if digits.is_empty() {
-            return None;
+        match (text.first()?, syntax::number_at(text, 1)) {
+            (b'#', (Some(value), end)) if end == text.len() => Some(Self(value)),
+            _ => None,
         }
-        let mut value = 0_u64;
-        for &digit in digits {
-            if !digit.is_ascii_digit() {
-                return None;
-            }
-            value = value.checked_mul(10)?.checked_add(u64::from(digit - b'0'))?;
-        }
-        Some(Self(value))
     }
 }
 
@@ -73,16 +65,15 @@ impl ExchangeStructure {
     /// The parameters of `DATA(…)`; `None` for a section without.
     #[must_use]
     pub fn section_parameters(&self, section: &Section) -> Option<Parameters<'_>> {
-        section.parameters.map(|inside| Parameters::new(self.source.bytes(), inside))
+        section.parameters.map(|inside| Parameters::new(self.source.bytes(), inside, Comments::Possible))
     }
 
     /// The records of the header: `FILE_DESCRIPTION`, `FILE_NAME`, `FILE_SCHEMA` and others.
     pub fn header(&self) -> impl Iterator<Item = SimpleRecord<'_>> {
         let bytes = self.source.bytes();
-        self.index
-            .header
-            .iter()
-            .filter_map(|span| simple_record(bytes, span.start as usize, content_end(bytes, *span)))
+        self.index.header.iter().filter_map(|span| {
+            simple_record(bytes, span.start as usize, content_end(bytes, *span), Comments::Possible)
+        })
     }
 
     /// The header record of a keyword; case is not looked at.
@@ -188,6 +179,11 @@ impl<'a> Instance<'a> {
         self.structure.index.records[self.position as usize]
     }
 
+    /// A cursor over a span between two parentheses of this instance.
+    pub(super) fn parameters_in(&self, inside: Span) -> Parameters<'a> {
+        Parameters::new(self.bytes(), inside, self.structure.index.comments)
+    }
+
     /// Position in file order.
     #[must_use]
     pub fn position(&self) -> u32 {
@@ -198,8 +194,8 @@ impl<'a> Instance<'a> {
     #[must_use]
     pub fn name(&self) -> InstanceName {
         let start = self.record_span().start as usize;
-        let end = syntax::digits_end(self.bytes(), start + 1);
-        InstanceName::parse(&self.bytes()[start..end]).expect("records are indexed under a name of 64 bits")
+        let (name, _) = syntax::number_at(self.bytes(), start + 1);
+        InstanceName(name.expect("records are indexed under a name of 64 bits"))
     }
 
     /// From `#` to behind `;`.
@@ -250,12 +246,17 @@ impl<'a> Instance<'a> {
         let (mut at, end) = self.body();
         let complex = bytes.get(at) == Some(&b'(');
         at += usize::from(complex);
+        let comments = self.structure.index.comments;
         let mut done = false;
         std::iter::from_fn(move || {
             if done {
                 return None;
             }
-            let record = simple_record(bytes, at, end);
+            let record = if complex {
+                simple_record(bytes, at, end, comments)
+            } else {
+                whole_record(bytes, at, end, comments)
+            };
             done = record.is_none() || !complex;
             at = record.as_ref().map_or(end, |record| record.inside.end as usize + 1);
             record
@@ -284,6 +285,7 @@ pub struct SimpleRecord<'a> {
     bytes: &'a [u8],
     keyword: Span,
     inside: Span,
+    comments: Comments,
 }
 
 impl<'a> SimpleRecord<'a> {
@@ -308,7 +310,7 @@ impl<'a> SimpleRecord<'a> {
     /// A cursor over the parameters.
     #[must_use]
     pub fn parameters(&self) -> Parameters<'a> {
-        Parameters::new(self.bytes, self.inside)
+        Parameters::new(self.bytes, self.inside, self.comments)
     }
 
     /// What stands between the parentheses.
@@ -331,15 +333,28 @@ fn keyword_span(bytes: &[u8], start: usize, end: usize) -> Option<Span> {
     (stop > begin && !bytes[begin].is_ascii_digit()).then(|| syntax::span(start, stop))
 }
 
+/// Keyword of the record at or behind `at`, and the offset of its parenthesis.
+fn opening(bytes: &[u8], at: usize, end: usize) -> Option<(Span, usize)> {
+    let bytes = &bytes[..end];
+    let keyword = keyword_span(bytes, syntax::trivia_end(bytes, at), end)?;
+    let open = syntax::trivia_end(bytes, keyword.end as usize);
+    (bytes.get(open) == Some(&b'(')).then_some((keyword, open))
+}
+
 /// The record at or behind `at`, before `end`. An unclosed one runs to `end`.
-fn simple_record(bytes: &[u8], at: usize, end: usize) -> Option<SimpleRecord<'_>> {
-    let bytes_before = &bytes[..end];
-    let start = syntax::trivia_end(bytes_before, at);
-    let keyword = keyword_span(bytes_before, start, end)?;
-    let open = syntax::trivia_end(bytes_before, keyword.end as usize);
-    if bytes_before.get(open) != Some(&b'(') {
-        return None;
+fn simple_record(bytes: &[u8], at: usize, end: usize, comments: Comments) -> Option<SimpleRecord<'_>> {
+    let (keyword, open) = opening(bytes, at, end)?;
+    let close = parameter::list_end(&bytes[..end], open, comments);
+    let inside = syntax::span(open + 1, close.map_or(end, |close| close - 1));
+    Some(SimpleRecord { bytes, keyword, inside, comments })
+}
+
+/// The record that fills everything from `at` to `end`, so that its last byte tells where its parameters end.
+fn whole_record(bytes: &[u8], at: usize, end: usize, comments: Comments) -> Option<SimpleRecord<'_>> {
+    if bytes[..end].last() != Some(&b')') {
+        return simple_record(bytes, at, end, comments);
     }
-    let inside_end = parameter::list_end(bytes_before, open).map_or(end, |close| close - 1);
-    Some(SimpleRecord { bytes, keyword, inside: syntax::span(open + 1, inside_end) })
+    let (keyword, open) = opening(bytes, at, end)?;
+    let inside = syntax::span(open + 1, (end - 1).max(open + 1));
+    Some(SimpleRecord { bytes, keyword, inside, comments })
 }

@@ -9,6 +9,7 @@ use memchr::{memchr, memchr_iter, memchr3, memmem};
 
 use super::code::Code;
 use super::name_table::{DenseBuilder, Insertion, NameTable};
+use super::parameter::{self, Comments};
 use super::section::{Entry, Section, SectionKind};
 use super::syntax::{self, TokenKind};
 use crate::diagnostic::Sink;
@@ -30,6 +31,8 @@ pub(super) struct Index {
     pub(super) names: NameTable,
     /// For each record with a scope, by its start: what stands behind the scope.
     pub(super) scope_bodies: BTreeMap<u32, u32>,
+    /// Whether comments stand inside records.
+    pub(super) comments: Comments,
     pub(super) anchors: Vec<Entry>,
     pub(super) references: Vec<Entry>,
 }
@@ -48,6 +51,7 @@ pub(super) fn build(bytes: &[u8], sink: &mut dyn Sink) -> Index {
         references: Vec::new(),
         scopes: Vec::new(),
         scope_bodies: BTreeMap::new(),
+        comments: Comments::Absent,
         lower_case_seen: false,
         truncated: false,
         duplicates: BTreeSet::new(),
@@ -68,16 +72,7 @@ pub(super) struct Head {
 
 /// Reads `#12 =` at `at`; `None` when something else stands there.
 pub(super) fn record_head(bytes: &[u8], at: usize) -> Option<Head> {
-    let mut end = at + 1;
-    let mut name = 0_u64;
-    let mut fits = true;
-    while let Some(digit @ b'0'..=b'9') = bytes.get(end) {
-        match name.checked_mul(10).and_then(|tens| tens.checked_add(u64::from(digit - b'0'))) {
-            Some(next) => name = next,
-            None => fits = false,
-        }
-        end += 1;
-    }
+    let (name, end) = syntax::number_at(bytes, at + 1);
     if end == at + 1 {
         return None;
     }
@@ -85,7 +80,7 @@ pub(super) fn record_head(bytes: &[u8], at: usize) -> Option<Head> {
     if bytes.get(equals) != Some(&b'=') {
         return None;
     }
-    Some(Head { name: fits.then_some(name), body: syntax::trivia_end(bytes, equals + 1) })
+    Some(Head { name, body: syntax::trivia_end(bytes, equals + 1) })
 }
 
 /// Whether `#12 =` stands at `at`. Comments are not looked for, so that searching with this takes linear time
@@ -120,7 +115,7 @@ enum End {
 }
 
 /// Finds the semicolon that ends the statement whose inside contains `at`.
-fn statement_end(bytes: &[u8], mut at: usize) -> End {
+fn statement_end(bytes: &[u8], mut at: usize, comments: &mut Comments) -> End {
     while let Some(found) = bytes.get(at..).and_then(|rest| memchr3(b';', b'\'', b'/', rest)) {
         at += found;
         match bytes[at] {
@@ -129,7 +124,13 @@ fn statement_end(bytes: &[u8], mut at: usize) -> End {
                 Ok(end) => at = end,
                 Err(end) => return end,
             },
-            _ => at = syntax::comment_end(bytes, at).unwrap_or(at + 1),
+            _ => match syntax::comment_end(bytes, at) {
+                Some(end) => {
+                    *comments = Comments::Possible;
+                    at = end;
+                }
+                None => at += 1,
+            },
         }
     }
     End::Missing
@@ -177,6 +178,7 @@ struct Indexer<'a, 's> {
     /// Records whose scope is open.
     scopes: Vec<usize>,
     scope_bodies: BTreeMap<u32, u32>,
+    comments: Comments,
     lower_case_seen: bool,
     truncated: bool,
     /// Where the records begin whose name came before, once reported.
@@ -281,7 +283,7 @@ impl Indexer<'_, '_> {
         let open = syntax::trivia_end(self.bytes, self.at);
         let mut parameters = None;
         if self.bytes.get(open) == Some(&b'(')
-            && let Some(close) = super::parameter::list_end(self.bytes, open)
+            && let Some(close) = parameter::list_end(self.bytes, open, Comments::Possible)
         {
             parameters = Some(syntax::span(open + 1, close - 1));
             self.at = close;
@@ -372,7 +374,7 @@ impl Indexer<'_, '_> {
                 return;
             }
             self.lower_case(start);
-            match statement_end(self.bytes, start) {
+            match statement_end(self.bytes, start, &mut Comments::Possible) {
                 End::At(end) => {
                     self.header.push(syntax::span(start, end));
                     self.at = end;
@@ -498,7 +500,7 @@ impl Indexer<'_, '_> {
                 );
             }
         }
-        match statement_end(self.bytes, head.body) {
+        match statement_end(self.bytes, head.body, &mut self.comments) {
             End::At(end) => self.push(start, end, head),
             End::OpenString(end) => {
                 self.note(Code::DamagedRecord, start, end, "a string of this record is not closed");
@@ -548,7 +550,7 @@ impl Indexer<'_, '_> {
 
     fn close_scope(&mut self, start: usize) {
         let body = export_list_end(self.bytes, start + b"ENDSCOPE".len());
-        match statement_end(self.bytes, body) {
+        match statement_end(self.bytes, body, &mut self.comments) {
             End::At(end) | End::OpenString(end) => {
                 self.at = end;
                 if let Some(position) = self.scopes.pop() {
@@ -574,6 +576,7 @@ impl Indexer<'_, '_> {
             records: self.records,
             names,
             scope_bodies: self.scope_bodies,
+            comments: self.comments,
             anchors: self.anchors,
             references: self.references,
         }

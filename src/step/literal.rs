@@ -46,3 +46,41 @@ pub fn format_real(value: f64) -> String {
     }
     text
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reals_are_written_short_and_legal() {
+        let check = |value: f64, text: &str| assert_eq!(format_real(value), text);
+        check(0.0, "0.");
+        check(-0.0, "-0.");
+        check(1.0, "1.");
+        check(-12.5, "-12.5");
+        check(0.1, "0.1");
+        check(1e-7, "1.E-7");
+        check(-2.5e-9, "-2.5E-9");
+        check(1e300, "1.E300");
+        check(f64::MIN_POSITIVE, "2.2250738585072014E-308");
+    }
+
+    #[test]
+    fn numbers_are_read_in_every_spelling_of_real_files() {
+        let check = |text: &str, value: Option<f64>| assert_eq!(parse_real(text.as_bytes()), value, "{text}");
+        check("1.", Some(1.0));
+        check("+1.5", Some(1.5));
+        check("1.0E+0", Some(1.0));
+        check("-1.e-3", Some(-0.001));
+        check(".5", Some(0.5));
+        check("-.5", Some(-0.5));
+        check("7", Some(7.0));
+        check("1.E400", None);
+        check("inf", None);
+        check("-nan", None);
+        check("", None);
+        check(".", None);
+        assert_eq!(parse_integer(b"-42"), Some(-42));
+        assert_eq!(parse_integer(b"99999999999999999999"), None);
+    }
+}

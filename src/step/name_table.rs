@@ -85,7 +85,11 @@ impl DenseBuilder {
         }
         // The test above bounds the name by a small multiple of a 32-bit count.
         let slot = usize::try_from(name).expect("a dense name is small");
-        if slot >= self.table.len() {
+        if slot == self.table.len() {
+            self.table.push(position);
+            return Insertion::Fresh;
+        }
+        if slot > self.table.len() {
             self.table.resize(slot + 1, EMPTY);
         }
         if self.table[slot] != EMPTY {

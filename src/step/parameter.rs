@@ -6,6 +6,8 @@
 
 use std::borrow::Cow;
 
+use memchr::memchr3;
+
 use super::exchange_structure::InstanceName;
 use super::string;
 use super::syntax::{self, TokenKind};
@@ -19,6 +21,7 @@ pub struct Token<'a> {
 }
 
 impl<'a> Token<'a> {
+    #[inline]
     fn new(bytes: &'a [u8], start: usize, end: usize) -> Self {
         Self { text: &bytes[start..end], start: syntax::span(start, end).start }
     }
@@ -179,6 +182,15 @@ impl<'a> Parameter<'a> {
     }
 }
 
+/// Whether comments may stand between parameters. Where none can, lists are skipped faster.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Comments {
+    /// The index found no comment inside any record of the file.
+    Absent,
+    /// There may be comments.
+    Possible,
+}
+
 /// A cursor over the parameters between two parentheses. Copies are cheap.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Parameters<'a> {
@@ -187,13 +199,14 @@ pub struct Parameters<'a> {
     end: u32,
     /// A comma was read: a parameter must follow.
     after_comma: bool,
+    comments: Comments,
 }
 
 impl<'a> Parameters<'a> {
     /// Cursor over `inside`, the span between the parentheses, of the file's `bytes`.
     #[must_use]
-    pub(crate) fn new(bytes: &'a [u8], inside: Span) -> Self {
-        Self { bytes, at: inside.start, end: inside.end, after_comma: false }
+    pub(crate) fn new(bytes: &'a [u8], inside: Span, comments: Comments) -> Self {
+        Self { bytes, at: inside.start, end: inside.end, after_comma: false, comments }
     }
 
     /// What is still to be read: for a fresh cursor, everything between the parentheses.
@@ -211,7 +224,7 @@ impl<'a> Parameters<'a> {
             self.at = self.end;
             return None;
         }
-        let (mut parameter, mut end) = read(bytes, start);
+        let (mut parameter, mut end) = self.read(bytes, start);
         let mut next = syntax::trivia_end(bytes, end);
         if next < bytes.len() && bytes[next] != b',' {
             next = delimiter(bytes, next);
@@ -221,6 +234,54 @@ impl<'a> Parameters<'a> {
         self.after_comma = next < bytes.len();
         self.at = syntax::span(start, next + usize::from(self.after_comma)).end;
         Some((parameter, syntax::span(start, end)))
+    }
+
+    /// The parameter at `at`, which is no white space, and its end.
+    #[inline]
+    fn read(&self, bytes: &'a [u8], at: usize) -> (Parameter<'a>, usize) {
+        match bytes.get(at) {
+            None | Some(b',') => (Parameter::Malformed(Token::new(bytes, at, at)), at),
+            Some(b'#') => read_name(bytes, at),
+            Some(b'(') => match list_end(bytes, at, self.comments) {
+                Some(end) => (Parameter::List(self.inside(bytes, at + 1, end - 1)), end),
+                None => (Parameter::Malformed(Token::new(bytes, at, bytes.len())), bytes.len()),
+            },
+            Some(_) => self.read_token(bytes, at),
+        }
+    }
+
+    fn inside(&self, bytes: &'a [u8], start: usize, end: usize) -> Self {
+        Self::new(bytes, syntax::span(start, end), self.comments)
+    }
+
+    #[inline]
+    fn read_token(&self, bytes: &'a [u8], at: usize) -> (Parameter<'a>, usize) {
+        let (kind, end) = syntax::solid_token_at(bytes, at);
+        let token = Token::new(bytes, at, end);
+        let parameter = match kind {
+            TokenKind::Omitted => Parameter::Omitted,
+            TokenKind::Derived => Parameter::Derived,
+            TokenKind::Integer => Parameter::Integer(token),
+            TokenKind::Real => Parameter::Real(token),
+            TokenKind::String => Parameter::String(token),
+            TokenKind::Enumeration => Parameter::Enumeration(token),
+            TokenKind::Binary => Parameter::Binary(token),
+            TokenKind::ValueName | TokenKind::Resource => Parameter::External(token),
+            TokenKind::Keyword => return self.read_typed(bytes, token, end),
+            _ => Parameter::Malformed(token),
+        };
+        (parameter, end)
+    }
+
+    fn read_typed(&self, bytes: &'a [u8], keyword: Token<'a>, end: usize) -> (Parameter<'a>, usize) {
+        let open = syntax::trivia_end(bytes, end);
+        if bytes.get(open) == Some(&b'(')
+            && let Some(close) = list_end(bytes, open, self.comments)
+        {
+            let parameters = self.inside(bytes, open + 1, close - 1);
+            return (Parameter::Typed { keyword: keyword.text, parameters }, close);
+        }
+        (Parameter::Malformed(keyword), end)
     }
 
     /// The parameters with their places.
@@ -237,52 +298,51 @@ impl<'a> Iterator for Parameters<'a> {
     }
 }
 
-/// The parameter at `at`, which is no white space, and its end.
-fn read(bytes: &[u8], at: usize) -> (Parameter<'_>, usize) {
-    if at >= bytes.len() || bytes[at] == b',' {
-        return (Parameter::Malformed(Token::new(bytes, at, at)), at);
-    }
-    if bytes[at] == b'(' {
-        return match list_end(bytes, at) {
-            Some(end) => (Parameter::List(Parameters::new(bytes, syntax::span(at + 1, end - 1))), end),
-            None => (Parameter::Malformed(Token::new(bytes, at, bytes.len())), bytes.len()),
-        };
-    }
-    let (kind, end) = syntax::token_at(bytes, at);
-    let token = Token::new(bytes, at, end);
-    let parameter = match kind {
-        TokenKind::Omitted => Parameter::Omitted,
-        TokenKind::Derived => Parameter::Derived,
-        TokenKind::Integer => Parameter::Integer(token),
-        TokenKind::Real => Parameter::Real(token),
-        TokenKind::String => Parameter::String(token),
-        TokenKind::Enumeration => Parameter::Enumeration(token),
-        TokenKind::Binary => Parameter::Binary(token),
-        TokenKind::InstanceName => match InstanceName::parse(token.text) {
-            Some(name) => Parameter::Reference(name),
-            None if token.text[1].is_ascii_digit() => Parameter::Malformed(token),
-            None => Parameter::External(token),
-        },
-        TokenKind::ValueName | TokenKind::Resource => Parameter::External(token),
-        TokenKind::Keyword => return read_typed(bytes, token, end),
-        _ => Parameter::Malformed(token),
-    };
-    (parameter, end)
-}
-
-fn read_typed<'a>(bytes: &'a [u8], keyword: Token<'a>, end: usize) -> (Parameter<'a>, usize) {
-    let open = syntax::trivia_end(bytes, end);
-    if bytes.get(open) == Some(&b'(')
-        && let Some(close) = list_end(bytes, open)
+/// What begins with `#`: a reference, or a constant of edition 3.
+#[inline]
+fn read_name(bytes: &[u8], at: usize) -> (Parameter<'_>, usize) {
+    let (name, end) = syntax::number_at(bytes, at + 1);
+    if let Some(name) = name
+        && !bytes.get(end).is_some_and(|&byte| syntax::is_keyword_byte(byte))
     {
-        let parameters = Parameters::new(bytes, syntax::span(open + 1, close - 1));
-        return (Parameter::Typed { keyword: keyword.text, parameters }, close);
+        return (Parameter::Reference(InstanceName(name)), end);
     }
-    (Parameter::Malformed(keyword), end)
+    let end = syntax::keyword_end(bytes, at + 1);
+    let token = Token::new(bytes, at, end);
+    match token.text.get(1) {
+        Some(byte) if !byte.is_ascii_digit() => (Parameter::External(token), end),
+        _ => (Parameter::Malformed(token), end),
+    }
 }
 
 /// Offset behind the parenthesis that closes the one at `open`; `None` when it is not closed.
-pub(crate) fn list_end(bytes: &[u8], open: usize) -> Option<usize> {
+#[inline]
+pub(crate) fn list_end(bytes: &[u8], open: usize, comments: Comments) -> Option<usize> {
+    match comments {
+        Comments::Absent => list_end_plain(bytes, open),
+        Comments::Possible => list_end_commented(bytes, open),
+    }
+}
+
+fn list_end_plain(bytes: &[u8], open: usize) -> Option<usize> {
+    let mut depth = 1_usize;
+    let mut at = open + 1;
+    loop {
+        at += memchr3(b'(', b')', b'\'', bytes.get(at..)?)?;
+        match bytes[at] {
+            b'(' => depth += 1,
+            b')' if depth == 1 => return Some(at + 1),
+            b')' => depth -= 1,
+            _ => {
+                at = syntax::string_end(bytes, at)?;
+                continue;
+            }
+        }
+        at += 1;
+    }
+}
+
+fn list_end_commented(bytes: &[u8], open: usize) -> Option<usize> {
     let mut depth = 0_usize;
     let mut at = open;
     loop {
@@ -311,7 +371,7 @@ fn delimiter(bytes: &[u8], mut at: usize) -> usize {
     while at < bytes.len() {
         at = match bytes[at] {
             b',' => return at,
-            b'(' => list_end(bytes, at).unwrap_or(bytes.len()),
+            b'(' => list_end_commented(bytes, at).unwrap_or(bytes.len()),
             _ => syntax::token_at(bytes, at).1,
         };
     }
@@ -324,4 +384,51 @@ fn trimmed_end(bytes: &[u8], start: usize, mut end: usize) -> usize {
         end -= 1;
     }
     end
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parameters(text: &str) -> Parameters<'_> {
+        Parameters::new(text.as_bytes(), syntax::span(0, text.len()), Comments::Possible)
+    }
+
+    #[test]
+    fn every_kind_is_recognised() {
+        let text = "$,*,1,-2.5E1,'a,b)',.T.,\"0F\",#12,(1,(2)),LENGTH_MEASURE(3.),@4,<u#v>,!MY_TYPE()";
+        let read: Vec<_> = parameters(text).collect();
+        assert!(matches!(read[0], Parameter::Omitted) && matches!(read[1], Parameter::Derived));
+        assert_eq!((read[2].as_i64(), read[2].as_f64()), (Some(1), Some(1.0)));
+        assert_eq!((read[3].as_i64(), read[3].as_f64()), (None, Some(-25.0)));
+        assert_eq!(read[4].as_str().as_deref(), Some("a,b)"));
+        assert_eq!((read[5].as_enum(), read[5].as_bool()), (Some(b"T".as_slice()), Some(true)));
+        assert!(matches!(read[6], Parameter::Binary(_)));
+        assert_eq!(read[7].as_reference(), Some(InstanceName(12)));
+        assert_eq!(read[8].as_list().map(Iterator::count), Some(2));
+        assert_eq!(read[9].as_f64(), Some(3.0));
+        assert!(matches!(read[10], Parameter::External(_)) && matches!(read[11], Parameter::External(_)));
+        assert!(matches!(&read[12], Parameter::Typed { keyword: b"!MY_TYPE", .. }));
+        assert_eq!(read.len(), 13);
+    }
+
+    #[test]
+    fn malformed_parameters_do_not_hide_their_neighbours() {
+        for (text, count) in
+            [("1,,2", 3), ("1,", 2), (",", 2), ("1 2,3", 2), ("NAN,3", 2), ("(1,2", 1), ("", 0), (" ", 0)]
+        {
+            let read: Vec<_> = parameters(text).collect();
+            assert_eq!(read.len(), count, "{text}");
+            let malformed = read.iter().any(|parameter| matches!(parameter, Parameter::Malformed(_)));
+            assert_eq!(malformed, count > 0, "{text}");
+        }
+        assert_eq!(parameters("1 2,3").nth(1).and_then(|p| p.as_i64()), Some(3));
+    }
+
+    #[test]
+    fn places_cover_the_whole_parameter() {
+        let text = " 'x' , /*c*/ A( 1 ) , ( 2 ) ";
+        let spans: Vec<_> = parameters(text).with_spans().map(|(_, span)| &text[span.range()]).collect();
+        assert_eq!(spans, ["'x'", "A( 1 )", "( 2 )"]);
+    }
 }

@@ -150,3 +150,44 @@ impl Iterator for References<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::Source;
+
+    fn read(data: &str) -> ExchangeStructure {
+        let text =
+            format!("ISO-10303-21;HEADER;ENDSEC;ANCHOR;<x>=#90;ENDSEC;DATA;{data}ENDSEC;END-ISO-10303-21;");
+        ExchangeStructure::parse(Source::new(text.into_bytes()).expect("small"), &mut Vec::new())
+    }
+
+    #[test]
+    fn users_are_each_counted_once_and_text_in_strings_not_at_all() {
+        let structure = read("#1=A();#2=B(#1,(#1,#3));#3=C('#1',/*#1*/#1);#4=D(#77);");
+        let index = ReverseIndex::build(&structure);
+        assert_eq!(index.users(&structure, InstanceName(1)), [1, 2]);
+        assert_eq!(index.users(&structure, InstanceName(3)), [1]);
+        assert_eq!(index.count(&structure, InstanceName(2)), 0);
+        assert_eq!(index.users(&structure, InstanceName(77)), [0_u32; 0]);
+    }
+
+    #[test]
+    fn what_only_the_removed_used_goes_and_what_others_use_stays() {
+        // 2 goes and takes 3, 4 (used by 3) and 5 (used by 2 and 3); 6 is used by 7, 8 by nobody, 90 is anchored.
+        let structure =
+            read("#1=A(#2);#2=B(#3,#5,#6,#90);#3=C(#4,#5);#4=D();#5=E();#6=F();#7=G(#6);#8=H();#90=I();");
+        let index = ReverseIndex::build(&structure);
+        assert_eq!(index.orphans(&structure, &BTreeSet::from([1])), BTreeSet::from([1, 2, 3, 4]));
+    }
+
+    #[test]
+    fn dangling_references_are_named_with_their_record() {
+        let structure = read("#1=A(#2,#3);#3=B();#90=C();");
+        let mut sink = Vec::new();
+        structure.unresolved_references(&mut sink);
+        assert_eq!(sink.len(), 1);
+        assert_eq!(sink[0].entity.as_deref(), Some("#1"));
+        assert_eq!(structure.source().slice(sink[0].span.expect("a place")), b"#2");
+    }
+}

@@ -125,7 +125,7 @@ impl<'a> Decoder<'a> {
             Width::Four => 8,
         };
         let units: Vec<u32> = digits.chunks(size).filter_map(hexadecimal).collect();
-        self.lossy |= digits.len() % size != 0 || !body[end..].starts_with(b"\\X0\\");
+        self.lossy |= !digits.len().is_multiple_of(size) || !body[end..].starts_with(b"\\X0\\");
         match width {
             // Some writers put surrogate pairs here, though the standard means UCS-2.
             Width::Two => {
@@ -189,4 +189,51 @@ pub fn encode(text: &str) -> String {
     }
     out.push('\'');
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(token: &[u8], text: &str, lossy: bool) {
+        let decoded = decode(token);
+        assert_eq!((&*decoded.text, decoded.lossy), (text, lossy), "{}", String::from_utf8_lossy(token));
+    }
+
+    #[test]
+    fn directives_decode_as_the_standard_says() {
+        check(b"''", "", false);
+        check(b"'plain'", "plain", false);
+        check(b"'it''s'", "it's", false);
+        check(b"'a\\\\b'", "a\\b", false);
+        // ISO 10303-21 clause 6.4.3.2: \S\D is the character D + 128, Ä in ISO 8859-1.
+        check(b"'\\S\\Drger'", "\u{c4}rger", false);
+        check(b"'\\PE\\\\S\\2'", "\u{412}", false);
+        check(b"'\\PG\\\\S\\A'", "\u{391}", false);
+        check(b"'\\PF\\\\S\\G'", "\u{627}", false);
+        check(b"'\\PH\\\\S\\`'", "\u{5d0}", false);
+        check(b"'\\X\\D8'", "\u{d8}", false);
+        check(b"'\\X2\\03C003C1\\X0\\!'", "\u{3c0}\u{3c1}!", false);
+        check(b"'\\X4\\0001F600\\X0\\'", "\u{1f600}", false);
+        check(b"'two\r\nlines'", "twolines", false);
+    }
+
+    #[test]
+    fn what_the_standard_does_not_allow_is_kept() {
+        check("'\u{e9}\u{3c0}'".as_bytes(), "\u{e9}\u{3c0}", false);
+        check(b"'caf\xe9'", "caf\u{e9}", true);
+        check(b"'C:\\temp'", "C:\\temp", true);
+        check(b"'\\X2\\zz'", "\\X2\\zz", true);
+        check(b"'\\X2\\03C0'", "\u{3c0}", true);
+        check(b"'\\X2\\D83DDE00\\X0\\'", "\u{1f600}", false);
+        check(b"'\\X4\\FFFFFFFF\\X0\\'", "\u{fffd}", true);
+    }
+
+    #[test]
+    fn text_is_encoded_in_printable_ascii() {
+        assert_eq!(encode("it's a \\"), "'it''s a \\\\'");
+        assert_eq!(encode("\u{3c0}r\u{b2}"), "'\\X2\\03C0\\X0\\r\\X2\\00B2\\X0\\'");
+        assert_eq!(encode("\u{1f600}\u{e9}"), "'\\X4\\0001F600\\X0\\\\X2\\00E9\\X0\\'");
+        assert_eq!(encode("a\nb"), "'a\\X2\\000A\\X0\\b'");
+    }
 }

@@ -96,9 +96,12 @@ pub(crate) fn span(start: usize, end: usize) -> Span {
 /// The token that begins at `at < bytes.len()` and its end, which lies behind `at`.
 pub(crate) fn token_at(bytes: &[u8], at: usize) -> (TokenKind, usize) {
     let trivia = whitespace_end(bytes, at);
-    if trivia > at {
-        return (TokenKind::Whitespace, trivia);
-    }
+    if trivia > at { (TokenKind::Whitespace, trivia) } else { solid_token_at(bytes, at) }
+}
+
+/// Like [`token_at`], where no white space begins at `at`.
+#[inline]
+pub(crate) fn solid_token_at(bytes: &[u8], at: usize) -> (TokenKind, usize) {
     match bytes[at] {
         b'/' => comment_end(bytes, at).map_or((TokenKind::Junk, at + 1), |end| (TokenKind::Comment, end)),
         b'(' => (TokenKind::Open, at + 1),
@@ -158,8 +161,25 @@ fn is_byte_order_mark(bytes: &[u8], at: usize) -> bool {
     bytes.get(at..at + 3) == Some(&[0xef, 0xbb, 0xbf])
 }
 
+/// Whether white space, a comment, a print control directive or a byte-order mark may begin with this byte.
+#[inline]
+fn may_begin_trivia(byte: u8) -> bool {
+    matches!(byte, 0..=b' ' | b'/' | b'\\' | 0x7f | 0xef)
+}
+
 /// End of white space and comments at `at`. An unclosed comment runs to the end.
-pub(crate) fn trivia_end(bytes: &[u8], mut at: usize) -> usize {
+#[inline]
+pub(crate) fn trivia_end(bytes: &[u8], at: usize) -> usize {
+    // Between most tokens stands nothing or one blank.
+    match bytes.get(at..) {
+        Some([first, ..]) if !may_begin_trivia(*first) => at,
+        Some([b' ', second, ..]) if !may_begin_trivia(*second) => at + 1,
+        Some([_, ..]) => trivia_end_slow(bytes, at),
+        _ => at,
+    }
+}
+
+fn trivia_end_slow(bytes: &[u8], mut at: usize) -> usize {
     loop {
         at = whitespace_end(bytes, at);
         if bytes.get(at) != Some(&b'/') {
@@ -179,7 +199,16 @@ pub(crate) fn comment_end(bytes: &[u8], at: usize) -> Option<usize> {
 }
 
 /// Offset behind the closing quote of the string whose opening quote is at `at`.
+#[inline]
 pub(crate) fn string_end(bytes: &[u8], at: usize) -> Option<usize> {
+    // Most strings are empty.
+    match bytes.get(at + 1..at + 3) {
+        Some([b'\'', next]) if *next != b'\'' => Some(at + 2),
+        _ => string_end_slow(bytes, at),
+    }
+}
+
+fn string_end_slow(bytes: &[u8], at: usize) -> Option<usize> {
     let mut from = at + 1;
     loop {
         let quote = from + memchr(b'\'', bytes.get(from..)?)?;
@@ -188,6 +217,28 @@ pub(crate) fn string_end(bytes: &[u8], at: usize) -> Option<usize> {
         }
         from = quote + 2;
     }
+}
+
+/// Reads the digits from `at` on: their value, `None` when it exceeds 64 bits or there are none, and their end.
+#[inline]
+pub(crate) fn number_at(bytes: &[u8], at: usize) -> (Option<u64>, usize) {
+    /// Digits that always fit.
+    const SAFE_DIGITS: usize = 19;
+    let mut end = at;
+    let mut value = 0_u64;
+    while let Some(digit @ b'0'..=b'9') = bytes.get(end) {
+        value = value.wrapping_mul(10).wrapping_add(u64::from(digit - b'0'));
+        end += 1;
+    }
+    match end - at {
+        0 => (None, end),
+        1..=SAFE_DIGITS => (Some(value), end),
+        _ => (checked_number(&bytes[at..end]), end),
+    }
+}
+
+fn checked_number(digits: &[u8]) -> Option<u64> {
+    digits.iter().try_fold(0_u64, |value, digit| value.checked_mul(10)?.checked_add(u64::from(digit - b'0')))
 }
 
 fn binary_end(bytes: &[u8], at: usize) -> Option<usize> {
@@ -210,10 +261,26 @@ pub(crate) fn keyword_end(bytes: &[u8], at: usize) -> usize {
     run_end(bytes, at, is_keyword_byte)
 }
 
-pub(crate) fn digits_end(bytes: &[u8], at: usize) -> usize {
+/// End of the decimal digits from `at` on. Coordinates have many, so eight are looked at together.
+#[inline]
+pub(crate) fn digits_end(bytes: &[u8], mut at: usize) -> usize {
+    const HIGH: u64 = 0xf0f0_f0f0_f0f0_f0f0;
+    const ZEROS: u64 = 0x3030_3030_3030_3030;
+    const SIXES: u64 = 0x0606_0606_0606_0606;
+    while let Some(chunk) = bytes.get(at..).and_then(|rest| rest.first_chunk::<8>()) {
+        let word = u64::from_le_bytes(*chunk);
+        // A digit has the high half 3, and keeps it when 6 is added. A carry out of a byte disturbs only bytes
+        // behind it, and that byte is no digit itself.
+        let others = ((word & HIGH) ^ ZEROS) | ((word.wrapping_add(SIXES) & HIGH) ^ ZEROS);
+        if others != 0 {
+            return at + (others.trailing_zeros() / 8) as usize;
+        }
+        at += 8;
+    }
     run_end(bytes, at, |byte| byte.is_ascii_digit())
 }
 
+#[inline]
 fn run_end(bytes: &[u8], mut at: usize, accept: impl Fn(u8) -> bool) -> usize {
     while bytes.get(at).is_some_and(|&byte| accept(byte)) {
         at += 1;
@@ -260,4 +327,22 @@ fn number_token(bytes: &[u8], at: usize) -> (TokenKind, usize) {
         }
     }
     (kind, end)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_of_digits_end_at_the_first_other_byte() {
+        for length in 0..20 {
+            for other in 0..=255_u8 {
+                let mut bytes = b"01234567890123456789"[..length].to_vec();
+                bytes.push(other);
+                bytes.extend_from_slice(b"7777777777");
+                let expected = if other.is_ascii_digit() { bytes.len() } else { length };
+                assert_eq!(digits_end(&bytes, 0), expected, "{other} behind {length} digits");
+            }
+        }
+    }
 }

@@ -244,3 +244,39 @@ impl RecordWriter {
         self.text
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn complex_records_have_no_commas_between_partial_entities() {
+        let mut record = RecordWriter::instance(InstanceName(3), LineEnding::Lf);
+        record.open_complex().open("A").integers([1, 2]).derived().close().open("B").close().close();
+        assert_eq!(record.finish(), "#3=(A((1,2),*)B());");
+    }
+
+    #[test]
+    fn long_records_wrap_at_80_columns_and_one_line_files_do_not() {
+        let text = |ending| {
+            let mut record = RecordWriter::instance(InstanceName(1), ending);
+            record.open("X").reals((0..100).map(f64::from)).boolean(true).close();
+            record.finish()
+        };
+        let wrapped = text(LineEnding::CrLf);
+        assert!(wrapped.split("\r\n").count() > 3);
+        assert!(wrapped.split("\r\n").all(|line| line.len() <= LINE_LENGTH + 1), "{wrapped}");
+        assert_eq!(wrapped.replace("\r\n", ""), text(LineEnding::None));
+        let mut late = RecordWriter::parameter(78, LineEnding::Lf);
+        late.open_list().real(1.5).close();
+        assert_eq!(late.finish(), "(\n1.5)");
+    }
+
+    #[test]
+    fn the_first_line_tells_the_ending() {
+        assert_eq!(LineEnding::of(b"a\r\nb\n"), LineEnding::CrLf);
+        assert_eq!(LineEnding::of(b"a\rb"), LineEnding::Cr);
+        assert_eq!(LineEnding::of(b"a\nb"), LineEnding::Lf);
+        assert_eq!(LineEnding::of(b"ab"), LineEnding::None);
+    }
+}

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test when it cannot go on")]
 
 mod errors;
+mod files;
 mod invariants;
 mod models;
 mod panels;

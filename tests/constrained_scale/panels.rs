@@ -33,7 +33,8 @@ fn check((surface, loops): (NurbsSurface, Vec<HeldLoop>), scaling: &Scaling, exp
     }
     for group in &scaled.groups {
         for &(_, k) in &group.loops {
-            let rigid = rigid_deviation(&surface, &face.surface, &loops[k].contour.points, &group.motion);
+            let rigid =
+                rigid_deviation(&surface, &face.surface, &loops[k].contour.points, &group.motion).relative;
             assert!(rigid <= 1e-12, "loop {k} deviates by {rigid:.3e}");
         }
     }

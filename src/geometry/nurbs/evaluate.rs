@@ -79,11 +79,12 @@ impl<const H: usize> NurbsCurve<H> {
 
 /// The quotient rule to second order (A4.2); the last coordinate of the result has no meaning.
 fn divide<const H: usize>(mut a: [[f64; H]; 3]) -> [[f64; H]; 3] {
-    let (w, w1, w2) = (a[0][H - 1], a[1][H - 1], a[2][H - 1]);
-    for c in 0..H - 1 {
-        a[0][c] /= w;
-        a[1][c] = (a[1][c] - w1 * a[0][c]) / w;
-        a[2][c] = (a[2][c] - 2.0 * w1 * a[1][c] - w2 * a[0][c]) / w;
+    let [point, first, second] = &mut a;
+    let (w, w1, w2) = (point[H - 1], first[H - 1], second[H - 1]);
+    for ((p, d), dd) in point.iter_mut().zip(first.iter_mut()).zip(second.iter_mut()).take(H - 1) {
+        *p /= w;
+        *d = (*d - w1 * *p) / w;
+        *dd = (*dd - 2.0 * w1 * *d - w2 * *p) / w;
     }
     a
 }

@@ -90,8 +90,7 @@ impl NurbsCurve3 {
                     // Near the foot the distance is flat to rounding: there the slope tells what is nearer.
                     let tangential =
                         |d: &[Vector3<f64>; 3]| d[1].dot(&(d[0] - target.coords)).abs() / d[1].norm();
-                    let nearer =
-                        trial_square < square - slack || tangential(&trial) < tangential(&now);
+                    let nearer = trial_square < square - slack || tangential(&trial) < tangential(&now);
                     let length = (trial[0] - now[0]).norm();
                     if nearer {
                         (t, now, square) = (next, trial, trial_square);
@@ -203,8 +202,8 @@ pub fn foot_point(
             if trial.square <= now.square + slack {
                 let length = (trial.at.point - now.at.point).norm();
                 // Near the foot the distance is flat to rounding: there the slope tells what is nearer.
-                let closer = trial.square < now.square - slack
-                    || trial.tangential(target) < now.tangential(target);
+                let closer =
+                    trial.square < now.square - slack || trial.tangential(target) < now.tangential(target);
                 let end = STEP_END * magnitude(target, &trial.at.point.coords);
                 if closer {
                     now = trial;

@@ -106,7 +106,7 @@ impl<const H: usize> NurbsCurve<H> {
     /// # Errors
     /// As [`KnotVector::with_inserted`]; [`KnotVectorError::EmptyDomain`] when `start >= end`.
     pub fn piece(&self, start: f64, end: f64) -> Result<Self, KnotVectorError> {
-        if !(start < end) {
+        if start.is_nan() || end.is_nan() || start >= end {
             return Err(KnotVectorError::EmptyDomain);
         }
         let p = self.knots().degree();

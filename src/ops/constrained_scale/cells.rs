@@ -245,3 +245,80 @@ impl CellGrid {
         points
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DOMAIN: [(f64, f64); 2] = [(0.0, 1.0), (0.0, 1.0)];
+
+    fn polygon(points: &[[f64; 2]]) -> Polygon {
+        Polygon::new(points, [0.0; 2], DOMAIN).unwrap()
+    }
+
+    fn ten_spans() -> CellGrid {
+        let knots = KnotVector::clamped_uniform(3, 10, 0.0, 1.0).unwrap();
+        CellGrid::new(&knots, &knots)
+    }
+
+    #[test]
+    fn a_polygon_on_knot_lines_meets_the_cells_on_both_sides() {
+        let square = polygon(&[[0.3, 0.3], [0.5, 0.3], [0.5, 0.5], [0.3, 0.5]]);
+        let met = ten_spans().met_by(&square);
+        // The ring of cells 2 to 5 in both directions; nothing of a 2 x 2 square is strictly inside.
+        for i in 0..10 {
+            for j in 0..10 {
+                let near = (2..=5).contains(&i) && (2..=5).contains(&j);
+                assert_eq!(met.contains(i, j), near, "cell ({i}, {j})");
+            }
+        }
+    }
+
+    #[test]
+    fn long_sides_miss_no_cell_and_the_inside_is_filled() {
+        let triangle = polygon(&[[0.05, 0.05], [0.95, 0.05], [0.05, 0.95]]);
+        let grid = ten_spans();
+        let mut cells = grid.met_by(&triangle);
+        assert!((0..10).all(|k| cells.contains(k, 9 - k)), "the diagonal side");
+        assert!(!cells.contains(3, 3));
+        cells.unite(&grid.inside(&triangle));
+        // Cells on or below the diagonal u + v = 1.
+        for i in 0..10 {
+            for j in 0..10 {
+                assert_eq!(
+                    cells.contains(i, j),
+                    i + j <= 10 && (i + j < 10 || (1..=9).contains(&i)),
+                    "({i}, {j})"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn control_points_of_a_cell_count_multiple_knots() {
+        // Degree 2, double knot at 0.5: functions 0 to 2 act on the first span, 2 to 4 on the second.
+        let u = KnotVector::new(2, vec![0.0, 0.0, 0.0, 0.5, 0.5, 1.0, 1.0, 1.0]).unwrap();
+        let v = KnotVector::clamped_uniform(1, 1, 0.0, 1.0).unwrap();
+        let grid = CellGrid::new(&u, &v);
+        assert_eq!(grid.shape(), (2, 1));
+        let points = |cell: usize| {
+            let mut cells = Mask::empty(2, 1);
+            cells.insert(cell, 0);
+            grid.control_points(&cells).indices().collect::<Vec<_>>()
+        };
+        assert_eq!(points(0), [0, 1, 2, 3, 4, 5]);
+        assert_eq!(points(1), [4, 5, 6, 7, 8, 9]);
+    }
+
+    #[test]
+    fn dilation_is_by_chebyshev_distance_and_stops_at_the_border() {
+        let mut mask = Mask::empty(5, 7);
+        mask.insert(0, 3);
+        let wide = mask.dilated(2);
+        for i in 0..5 {
+            for j in 0..7_usize {
+                assert_eq!(wide.contains(i, j), i <= 2 && j.abs_diff(3) <= 2);
+            }
+        }
+    }
+}

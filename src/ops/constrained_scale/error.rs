@@ -39,16 +39,6 @@ pub enum ScaleError {
         /// What it belongs to.
         what: &'static str,
     },
-    /// The curves of a loop do not meet end to end.
-    #[error("face {face}: loop {held} does not close, its gap in parameters is {gap:.3e}")]
-    LoopNotClosed {
-        /// Face.
-        face: String,
-        /// Loop, by the caller's index.
-        held: usize,
-        /// Distance of consecutive ends.
-        gap: f64,
-    },
     /// Two pieces of one loop cross.
     #[error("face {face}: loop {held} crosses itself at parameters ({:.6}, {:.6})", at[0], at[1])]
     LoopSelfIntersects {
@@ -159,7 +149,6 @@ impl ScaleError {
             Self::BadScale { .. } => "scale.bad-scale",
             Self::BadKnots { .. } => "scale.bad-knots",
             Self::NonFiniteInput { .. } => "scale.non-finite-input",
-            Self::LoopNotClosed { .. } => "scale.loop-not-closed",
             Self::LoopSelfIntersects { .. } => "scale.loop-self-intersects",
             Self::LoopOutsideDomain { .. } => "scale.loop-outside-domain",
             Self::LoopDegenerate { .. } => "scale.loop-degenerate",

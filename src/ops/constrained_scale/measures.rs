@@ -59,17 +59,26 @@ pub fn quality(face: &ScaledFace, samples: usize) -> Quality {
     sums.quality()
 }
 
-/// Greatest deviation of a held loop from its rigid copy, as a part of the loop's extent.
+/// How far a held loop is from its rigid copy.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RigidDeviation {
+    /// Greatest deviation of a coordinate, as a part of the loop's extent.
+    pub relative: f64,
+    /// The part of it that rounding of the coordinates themselves explains: it matters for a small loop far from
+    /// the origin.
+    pub rounding: f64,
+}
+
+/// Deviation of a held loop from its rigid copy.
 ///
-/// `before` and `after` are the surfaces, `points` the loop's polygon, which is sampled eight times finer. Eight times the
-/// rounding of the coordinates themselves is taken off, so that a small loop far from the origin is not blamed.
+/// `before` and `after` are the surfaces, `points` the loop's polygon, which is sampled eight times finer.
 #[must_use]
 pub fn rigid_deviation(
     before: &NurbsSurface,
     after: &NurbsSurface,
     points: &[[f64; 2]],
     motion: &Motion,
-) -> f64 {
+) -> RigidDeviation {
     let (mut worst, mut magnitude) = (0.0_f64, 0.0_f64);
     let mut low = Vector3::repeat(f64::INFINITY);
     let mut high = -low;
@@ -85,7 +94,8 @@ pub fn rigid_deviation(
             high = high.sup(&start.coords);
         }
     }
-    (worst - ROUNDINGS * f64::EPSILON * magnitude).max(0.0) / (high - low).max()
+    let extent = (high - low).max();
+    RigidDeviation { relative: worst / extent, rounding: ROUNDINGS * f64::EPSILON * magnitude / extent }
 }
 
 /// Sub-samples of each side of a loop's polygon.

@@ -165,3 +165,52 @@ fn cross((a, b): Side, (c, d): Side) -> bool {
         |o: [f64; 2], p: [f64; 2], q: [f64; 2]| (p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0]);
     turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DOMAIN: Domain = [(0.0, 1.0), (0.0, 1.0)];
+
+    fn made(points: &[[f64; 2]]) -> Result<Polygon, PolygonFault> {
+        Polygon::new(points, [0.0; 2], DOMAIN)
+    }
+
+    #[test]
+    fn a_repeated_first_point_is_dropped_and_the_area_is_signed() {
+        let square = made(&[[0.2, 0.2], [0.6, 0.2], [0.6, 0.4], [0.2, 0.4], [0.2, 0.2]]).unwrap();
+        assert_eq!(square.points().len(), 4);
+        assert!((square.area() - 0.08).abs() < 1e-15);
+        let turned = made(&[[0.2, 0.4], [0.6, 0.4], [0.6, 0.2], [0.2, 0.2]]).unwrap();
+        assert!((turned.area() + 0.08).abs() < 1e-15);
+    }
+
+    #[test]
+    fn points_off_by_rounding_come_to_the_border_and_others_are_refused() {
+        let near = made(&[[-1e-12, 0.2], [0.6, 0.2], [0.6, 0.4]]).unwrap();
+        assert_eq!(near.points()[0], [0.0, 0.2]);
+        assert_eq!(made(&[[-0.01, 0.2], [0.6, 0.2], [0.6, 0.4]]), Err(PolygonFault::Outside([-0.01, 0.2])));
+    }
+
+    #[test]
+    fn inside_is_told_by_parity() {
+        // A comb with two teeth: the gap between them is outside.
+        let comb =
+            [[0.1, 0.1], [0.9, 0.1], [0.9, 0.8], [0.7, 0.8], [0.7, 0.3], [0.3, 0.3], [0.3, 0.8], [0.1, 0.8]];
+        let comb = made(&comb).unwrap();
+        assert!(comb.contains([0.2, 0.6]) && comb.contains([0.8, 0.6]) && comb.contains([0.5, 0.2]));
+        assert!(!comb.contains([0.5, 0.6]) && !comb.contains([0.05, 0.2]));
+    }
+
+    #[test]
+    fn crossings_within_one_polygon_and_between_two_are_found() {
+        let bow = made(&[[0.1, 0.1], [0.9, 0.9], [0.9, 0.1], [0.1, 0.9]]);
+        assert!(matches!(bow, Err(PolygonFault::Crosses(_))));
+        let square = |x: f64, size: f64| {
+            made(&[[x, 0.4], [x + size, 0.4], [x + size, 0.4 + size], [x, 0.4 + size]]).unwrap()
+        };
+        assert!(square(0.2, 0.2).overlaps(&square(0.3, 0.25)));
+        assert!(square(0.2, 0.4).overlaps(&square(0.3, 0.1)));
+        assert!(!square(0.2, 0.2).overlaps(&square(0.5, 0.2)));
+    }
+}

@@ -26,8 +26,11 @@ const BISECT: f64 = 0.6;
 /// Points in each direction at which span lengths are measured.
 const LENGTH_SAMPLES: usize = 17;
 
-/// Bisects the net of a face until the gaps are wide enough and `least_level` is reached, or the next net would
+/// Refines the net of a face until the gaps are wide enough and `least_level` is reached, or the next net would
 /// exceed the limit. `group` tells for each held loop which loops move with it: those may be near.
+///
+/// All spans are bisected, as published. Where that does not make room within the limit, because the knots are
+/// uneven, only the longer spans are bisected.
 ///
 /// # Errors
 /// [`ScaleError::NetTooLarge`] for the input net, [`ScaleError::HoldCoversFace`],
@@ -39,13 +42,29 @@ pub fn refine(
     scaling: &Scaling,
 ) -> Result<Refined, ScaleError> {
     let limit = scaling.max_control_points;
-    let mut surface = face.surface.clone();
-    if surface.net().len() > limit {
-        let points = surface.net().len();
+    let points = face.surface.net().len();
+    if points > limit {
         return Err(ScaleError::NetTooLarge { face: face.name.clone(), points, limit });
     }
-    // Bisection changes no geometry, so one measurement serves all levels.
-    let lengths = mean_lengths(&surface, LENGTH_SAMPLES);
+    // Refinement changes no geometry, so one measurement serves all levels.
+    let lengths = mean_lengths(&face.surface, LENGTH_SAMPLES);
+    let all = |surface: &NurbsSurface, _: usize| bisected(surface, lengths, limit);
+    let longer = |_: &NurbsSurface, level: usize| evened(&face.surface, lengths, level, limit);
+    run(face, group, least_level, scaling, all).or_else(|error| match error {
+        ScaleError::FeatureTooCloseToBoundary { .. } => run(face, group, least_level, scaling, longer),
+        other => Err(other),
+    })
+}
+
+/// Takes one net after the other from `next`, which gets the present net and the next level.
+fn run(
+    face: &Prepared,
+    group: &[usize],
+    least_level: usize,
+    scaling: &Scaling,
+    next: impl Fn(&NurbsSurface, usize) -> Option<NurbsSurface>,
+) -> Result<Refined, ScaleError> {
+    let mut surface = face.surface.clone();
     let mut level = 0;
     loop {
         let envelopes = Envelopes::new(face, &surface, scaling.continuity.rows());
@@ -54,15 +73,49 @@ pub fn refine(
         if level >= least_level && border.is_none() && near_pairs.is_empty() {
             return Ok(Refined { surface, envelopes, level, near_pairs });
         }
-        let Some(next) = bisected(&surface, lengths, limit) else {
+        let Some(finer) = next(&surface, level + 1) else {
             return match border {
                 None => Ok(Refined { surface, envelopes, level, near_pairs }),
-                Some(held) => Err(too_close(face, &surface, &envelopes, held, limit)),
+                Some(held) => Err(too_close(face, &surface, &envelopes, held, scaling.max_control_points)),
             };
         };
-        surface = next;
+        surface = finer;
         level += 1;
     }
+}
+
+/// The net with every span halved until it is at most as long as the longest span after `level` bisections, unless
+/// it would exceed the limit.
+fn evened(surface: &NurbsSurface, lengths: [f64; 2], level: usize, limit: usize) -> Option<NurbsSurface> {
+    let knots = [surface.knots_u(), surface.knots_v()];
+    let spans = [0, 1].map(|k| {
+        let distinct = knots[k].distinct().0;
+        let (start, end) = knots[k].domain();
+        let per_parameter = lengths[k] / (end - start);
+        distinct.windows(2).map(|w| ((w[0], w[1]), (w[1] - w[0]) * per_parameter)).collect::<Vec<_>>()
+    });
+    let longest = spans.iter().flatten().map(|s| s.1).fold(0.0, f64::max);
+    let target = longest * 0.5_f64.powi(i32::try_from(level).ok()?);
+    let mut more = [Vec::new(), Vec::new()];
+    for (more, spans) in more.iter_mut().zip(&spans) {
+        for ((start, end), length) in spans {
+            let halvings = (length / target).log2().ceil().max(0.0);
+            let pieces = 2.0_f64.powf(halvings);
+            if pieces.is_nan() || pieces > limit as f64 {
+                return None;
+            }
+            let count = pieces as usize;
+            more.extend((1..count).map(|k| start + (end - start) * (k as f64 / pieces)));
+        }
+    }
+    let (rows, columns) = surface.shape();
+    let points = (rows + more[0].len()).checked_mul(columns + more[1].len())?;
+    if points > limit || (more[0].is_empty() && more[1].is_empty()) {
+        return None;
+    }
+    let inside = "an inner point of a span lies in the domain";
+    let along = surface.refined_u(&more[0]).expect(inside);
+    Some(along.refined_v(&more[1]).expect(inside))
 }
 
 fn too_close(

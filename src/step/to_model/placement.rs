@@ -4,7 +4,8 @@ use super::error::ReadError;
 use super::scope::Scope;
 use crate::math::{Frame, Point2, Point3, Vector2, Vector3};
 use crate::step::entity::Entity;
-use crate::step::view::{real, reference, simple_parts};
+use crate::step::literal;
+use crate::step::view::{plain_body, real, reference, simple_parts};
 use crate::step::{InstanceName, Parameter, Parameters};
 
 /// A `CARTESIAN_POINT` in space; a missing third coordinate is an error.
@@ -79,6 +80,9 @@ fn coordinates<const N: usize>(
     entity: Entity,
 ) -> Result<[f64; N], ReadError> {
     let instance = scope.instance(name)?;
+    if let Some(numbers) = plain_body(instance).and_then(|body| plain_numbers(body, entity)) {
+        return Ok(numbers);
+    }
     let simple = simple_parts(instance).filter(|(keyword, _)| *keyword == entity.name().as_bytes());
     let Some((_, inside)) = simple else {
         // Lower case, a short name, a complex instance, or something else altogether.
@@ -86,9 +90,30 @@ fn coordinates<const N: usize>(
         let attribute = if entity == Entity::Direction { "direction_ratios" } else { "coordinates" };
         return numbers(scope, name, view.list(attribute)?).ok_or(ReadError::Coordinates(name));
     };
-    let mut parameters = Parameters::new(scope.file.source().bytes(), inside);
+    let mut parameters = instance.parameters_in(inside);
     let list = parameters.nth(1).and_then(|parameter| parameter.as_list());
     list.and_then(|list| numbers(scope, name, list)).ok_or(ReadError::Coordinates(name))
+}
+
+/// The first `N` numbers of `KEYWORD('…',(…))` when it is written without blanks, comments or liberties;
+/// `None` sends everything else the careful way.
+fn plain_numbers<const N: usize>(body: &[u8], entity: Entity) -> Option<[f64; N]> {
+    let inside = body.strip_prefix(entity.name().as_bytes())?.strip_prefix(b"('")?;
+    let quote = inside.iter().position(|&byte| byte == b'\'')?;
+    let mut rest = inside[quote..].strip_prefix(b"',(")?;
+    let mut numbers = [0.0; N];
+    for number in &mut numbers {
+        let end = rest.iter().position(|&byte| matches!(byte, b',' | b')'))?;
+        let text = &rest[..end];
+        let plain = |byte: &u8| byte.is_ascii_digit() || matches!(byte, b'.' | b'-' | b'+' | b'E');
+        if !text.contains(&b'.') || !text.iter().all(plain) {
+            return None;
+        }
+        *number = literal::parse_real(text)?;
+        // Behind the last number nothing is left to read: a missing one is then found as no number.
+        rest = &rest[(end + usize::from(rest[end] == b','))..];
+    }
+    Some(numbers)
 }
 
 fn numbers<const N: usize>(

@@ -3,7 +3,7 @@
 //! Follows no reference. Most records, points first, are looked at once here and never again by type.
 
 use crate::step::entity::Entity;
-use crate::step::view::EntityView;
+use crate::step::view::{EntityView, plain_body};
 use crate::step::{ExchangeStructure, InstanceName};
 
 /// Names of the records where meaning begins, each list in file order.
@@ -35,7 +35,10 @@ impl Roots {
     /// Looks at each record once.
     pub(super) fn find(file: &ExchangeStructure) -> Self {
         let mut roots = Self::default();
-        for view in file.instances().filter_map(EntityView::of) {
+        // A point begins nothing, and most records are points: it is put aside by its first letters.
+        let point = |body: &[u8]| body.starts_with(b"CARTESIAN_POINT(");
+        let others = file.instances().filter(|instance| !plain_body(*instance).is_some_and(point));
+        for view in others.filter_map(EntityView::of) {
             if let Some(list) = roots.list_of(&view) {
                 list.push(view.name());
             }

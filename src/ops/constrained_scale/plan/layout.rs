@@ -65,8 +65,8 @@ impl Layouts {
 
 /// A loop that winds by less than this part of the parameter range closes; others wind by whole periods.
 const CLOSED: f64 = 0.25;
-/// Chord error of a loop's polygon as a part of a mean span: a fiftieth after two bisections.
-const CHORD: f64 = 1.0 / 200.0;
+/// Chord error of a loop's polygon as a part of a mean span: a fiftieth after five bisections.
+const CHORD: f64 = 1.0 / 1600.0;
 /// Uncertainty of a file that states none, as a part of the face's size.
 const UNCERTAINTY: f64 = 1e-6;
 /// Samples in each direction to turn a distance into a distance of parameters.

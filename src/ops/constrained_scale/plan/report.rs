@@ -8,7 +8,7 @@ use super::scope::face_name;
 use super::stretch::{SolvedGroup, Stretched};
 use crate::model::Model;
 use crate::ops::OperationError;
-use crate::ops::constrained_scale::measures::{REPORT_SAMPLES, quality, rigid_deviation};
+use crate::ops::constrained_scale::measures::{REPORT_SAMPLES, RigidDeviation, quality, rigid_deviation};
 
 /// Figures of all faces with held loops.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -100,10 +100,11 @@ pub(super) fn measure(model: &Model, held: &Held, stretched: &Stretched) -> Resu
             let after = &stretched.faces[&face].surface;
             let deviation = rigid_deviation(before, after, &contour.points, &group.motion);
             let (face, held) = (face_name(model, face), model.origins.loops[*id].to_string());
-            if deviation.is_nan() || deviation > RIGIDITY {
-                return Err(OperationError::RigidityLost { face, held, deviation });
+            let RigidDeviation { relative, rounding } = deviation;
+            if relative.is_nan() || relative > RIGIDITY + rounding {
+                return Err(OperationError::RigidityLost { face, held, deviation: relative });
             }
-            measured.push(LoopMeasures { held, face, rigid_deviation: deviation });
+            measured.push(LoopMeasures { held, face, rigid_deviation: relative });
         }
         groups.push(GroupMeasures {
             loops: measured,

@@ -1,0 +1,56 @@
+//! Fact: a pcurve, taken through its surface, lies on its edge's curve.
+
+use super::Finding;
+use crate::brep::{Brep, CoedgeId, FaceId, edge_range};
+use crate::math::Point3;
+
+/// A pcurve does not lie on its edge.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PcurveOffEdge {
+    /// The use of the edge.
+    pub coedge: CoedgeId,
+    /// Greatest distance of the pcurve's sampled points from the edge's curve, in file units.
+    pub distance: f64,
+    /// The pcurve's point at that distance.
+    pub place: Point3<f64>,
+}
+
+/// Samples of each pcurve: enough to meet an error of low degree on every part of it.
+const SAMPLES: usize = 17;
+
+/// Looks at the coedges of a face that have pcurves.
+///
+/// The standard asks that pcurve and curve be the same points, not that they share the parameter; a pcurve
+/// over another interval is compared end to end.
+pub(super) fn check(brep: &Brep, face: FaceId, tolerance: f64, findings: &mut Vec<Finding>) {
+    let Some(surface) = brep.surface_of(face).read() else { return };
+    for coedge in brep.coedges_of(face) {
+        let of = &brep.coedges[coedge];
+        let (Some(pcurve), Some(curve), Some(range)) =
+            (&of.pcurve, brep.curve_of(of.edge).read(), edge_range(brep, of.edge))
+        else {
+            continue;
+        };
+        let (low, high) = (range.start.min(range.end), range.start.max(range.end));
+        let (first, last) = pcurve.domain();
+        let slack = 1e-6 * (high - low);
+        let shares = first <= low + slack && last >= high - slack;
+        let mut worst = (0.0, Point3::origin());
+        for i in 0..SAMPLES {
+            let part = i as f64 / (SAMPLES - 1) as f64;
+            let t = low + (high - low) * part;
+            let p = pcurve.point_at(if shares { t } else { first + (last - first) * part });
+            let point = surface.point(p.x, p.y);
+            let same = (curve.point_wrapped(t) - point).norm();
+            let nearest = || (curve.point_wrapped(curve.parameter_of(&point, Some(t))) - point).norm();
+            let distance = if same <= tolerance { same } else { same.min(nearest()) };
+            if distance > worst.0 {
+                worst = (distance, point);
+            }
+        }
+        if worst.0 > tolerance {
+            let (distance, place) = worst;
+            findings.push(Finding::PcurveOffEdge(PcurveOffEdge { coedge, distance, place }));
+        }
+    }
+}

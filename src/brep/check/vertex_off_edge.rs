@@ -1,0 +1,39 @@
+//! Fact: a vertex lies at the end of every edge that it bounds.
+
+use super::Finding;
+use crate::brep::{Brep, EdgeId, FaceId, VertexId, edge_range};
+use crate::math::Point3;
+use std::collections::BTreeSet;
+
+/// A vertex is not at the end of its edge.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VertexOffEdge {
+    /// The vertex.
+    pub vertex: VertexId,
+    /// The edge.
+    pub edge: EdgeId,
+    /// Distance of the vertex from the edge's curve, in file units.
+    pub distance: f64,
+    /// The vertex's point.
+    pub place: Point3<f64>,
+}
+
+/// Looks at the edges of some faces, each once.
+pub(super) fn check(brep: &Brep, faces: &[FaceId], tolerance: f64, findings: &mut Vec<Finding>) {
+    let edges: BTreeSet<EdgeId> =
+        faces.iter().flat_map(|&f| brep.coedges_of(f)).map(|c| brep.coedges[c].edge).collect();
+    for id in edges {
+        let (Some(curve), Some(range)) = (brep.curve_of(id).read(), edge_range(brep, id)) else { continue };
+        let edge = &brep.edges[id];
+        for (vertex, t) in [(edge.start, range.start), (edge.end, range.end)] {
+            let place = brep.vertices[vertex].point;
+            let distance = (curve.point_wrapped(t) - place).norm();
+            if distance > tolerance {
+                findings.push(Finding::VertexOffEdge(VertexOffEdge { vertex, edge: id, distance, place }));
+            }
+            if edge.start == edge.end {
+                break;
+            }
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! Files, good and bad.
+
+use super::Fixture;
+
+#[test]
+fn convert_to_the_same_format_keeps_every_byte() {
+    let odd = b"\xef\xbb\xbfISO-10303-21;\r\nHEADER;\rENDSEC;\nDATA;\n#1 = FOO('\xe9', 1.E0 ,$ ) ;/* x */\nENDSEC;\nEND-ISO-10303-21;";
+    let fixture = Fixture::new().file("odd.stp", odd);
+    let said = fixture.run(&["convert", "odd.stp", "-o", "same.stp"]);
+    assert!(said.starts_with("exit code: 0\n"), "{said}");
+    assert_eq!(std::fs::read(fixture.path("same.stp")).expect("a copy"), odd);
+}
+
+#[test]
+fn iges_is_recognised_and_said_to_be_unread() {
+    let record = format!("{:<72}S      1\n", "a drawing");
+    let fixture = Fixture::new().file("part.igs", record);
+    insta::assert_snapshot!(fixture.run(&["convert", "part.igs", "-o", "out.step"]));
+    assert_eq!(fixture.left(), ["part.igs"]);
+}
+
+#[test]
+fn what_is_no_part_is_refused() {
+    let fixture = Fixture::new().file("notes.txt", "hello").file("empty.step", "");
+    insta::assert_snapshot!("unknown", fixture.run(&["inspect", "notes.txt"]));
+    insta::assert_snapshot!("empty", fixture.run(&["inspect", "empty.step"]));
+    insta::assert_snapshot!("absent", fixture.run(&["inspect", "absent.step"]));
+}
+
+#[test]
+fn a_truncated_file_is_refused_and_nothing_is_written() {
+    let sample = include_bytes!("../../samples/door/door.step");
+    let fixture = Fixture::new().file("cut.step", &sample[..sample.len() / 2]);
+    let said = fixture.run(&["convert", "cut.step", "-o", "out.step"]);
+    assert!(said.starts_with("exit code: 3\n"), "{said}");
+    assert_eq!(fixture.left(), ["cut.step"]);
+}
+
+#[test]
+fn an_input_is_never_written_over() {
+    let fixture = Fixture::new().sample("door/door.step");
+    insta::assert_snapshot!(fixture.run(&["convert", "door.step", "-o", "door.step"]));
+}
+
+#[test]
+fn inspect_tells_what_is_inside() {
+    let fixture = Fixture::new().sample("assembly/assembly.step");
+    insta::assert_snapshot!(fixture.run(&["inspect", "assembly.step"]));
+}
+
+#[test]
+fn inspect_finds_faces_by_every_selector() {
+    let fixture = Fixture::new().sample("assembly/assembly.step");
+    let selectors = [
+        ("{ name = \"OUTER*\" }", 1),
+        ("{ surface = \"plane\" }", 6),
+        ("{ product = \"bracket\" }", 6),
+        ("{ product = \"bracket\", area = \"largest\" }", 1),
+        ("{ colour = \"#bf1f1a\" }", 1),
+        ("{ near = [30, 20, 21], product = \"bracket\" }", 1),
+        ("[{ surface = \"plane\" }, { surface = \"b_spline\" }]", 7),
+    ];
+    for (selector, count) in selectors {
+        let said = fixture.run(&["inspect", "assembly.step", "--json", "--face", selector]);
+        let json = said.split("--- stdout\n").nth(1).and_then(|rest| rest.split("--- stderr").next());
+        let value: serde_json::Value =
+            serde_json::from_str(json.expect("standard output")).unwrap_or_else(|e| panic!("{e}: {said}"));
+        assert_eq!(value["faces"].as_array().map_or(0, Vec::len), count, "{selector}");
+    }
+}
+
+#[test]
+fn a_reader_that_goes_away_early_is_no_failure() {
+    use std::process::{Command, Stdio};
+    let program = assert_cmd::cargo::cargo_bin!("resurf");
+    let mut child = Command::new(program)
+        .args(["schema", "job"])
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    drop(child.stdout.take());
+    assert!(child.wait().expect("it ends").success());
+}
+
+#[test]
+fn usage_errors_end_with_2() {
+    let said = Fixture::new().run(&["convert"]);
+    assert!(said.starts_with("exit code: 2\n"), "{said}");
+}
