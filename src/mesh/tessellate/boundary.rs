@@ -48,8 +48,10 @@ pub(super) fn loops(context: &mut Context) -> Result<Vec<Vec<Corner>>, Tessellat
     let mut loops = Vec::with_capacity(found.len());
     let mut winding = Vec::new();
     for parameter_loop in &found {
-        let corners = corners(parameter_loop).expect("the points are samples of the edges that were given");
+        let mut corners =
+            corners(parameter_loop).expect("the points are samples of the edges that were given");
         let turns = [parameter_loop.winding.0, parameter_loop.winding.1];
+        spread(&mut corners);
         let [Some(first), Some(last)] = [corners.first(), corners.last()] else { continue };
         if turns == [0.0; 2] || first.vertex == last.vertex {
             // A loop that starts at a pole stands there with both parameters: it is closed as it is.
@@ -145,6 +147,26 @@ fn corner(brep: &Brep, at: &LoopPoint, edges: &BTreeMap<EdgeId, SharedEdge>) -> 
     let shared = edges.get(&brep.coedges[at.coedge].edge)?;
     let index = shared.samples.iter().position(|sample| sample.t.to_bits() == at.t.to_bits())?;
     Some(Corner { uv: [at.u, at.v], vertex: shared.vertices[index], point: shared.samples[index].point })
+}
+
+/// Moves corners that share one place of the parameter plane apart, along the way to the next place: an edge
+/// that runs a little beyond its surface has several closest points in one at the surface's border.
+fn spread(corners: &mut [Corner]) {
+    let same = |a: &Corner, b: &Corner| a.uv == b.uv && a.vertex != b.vertex;
+    let mut start = 0;
+    while start + 1 < corners.len() {
+        let run = corners[start..].windows(2).take_while(|pair| same(&pair[0], &pair[1])).count();
+        // The next place may be the loop's first again; a whole turn off, it is not the way to go.
+        if let Some(next) = corners.get(start + run + 1).map(|corner| corner.uv) {
+            let from = corners[start].uv;
+            for (corner, step) in corners[start..=start + run].iter_mut().zip(0u32..) {
+                #[expect(clippy::cast_precision_loss, reason = "a count of samples of one edge")]
+                let share = f64::from(step) / (run as f64 + 1.0);
+                corner.uv = [0, 1].map(|k| from[k] + (next[k] - from[k]) * share);
+            }
+        }
+        start += run + 1;
+    }
 }
 
 fn moved(corner: &Corner, by: [f64; 2]) -> Corner {
@@ -253,4 +275,24 @@ fn cut(context: &mut Context, from: &Corner, to: &Corner) -> Result<Vec<Corner>,
         }
     }
     Ok(corners)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn corners_at_one_place_are_spread_towards_the_next() {
+        let at = |vertex, uv| Corner { uv, vertex, point: Point3::origin() };
+        let mut corners =
+            [at(0, [0.0, 0.0]), at(1, [1.0, 0.0]), at(2, [1.0, 0.0]), at(3, [1.0, 0.0]), at(4, [1.0, 3.0])];
+        spread(&mut corners);
+        let places = corners.map(|corner| corner.uv);
+        assert_eq!(places, [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [1.0, 2.0], [1.0, 3.0]]);
+        // A pole stands twice on purpose.
+        let mut pole = [at(0, [0.0, 0.0]), at(0, [0.0, 0.0]), at(1, [1.0, 0.0])];
+        let before = pole;
+        spread(&mut pole);
+        assert_eq!(pole, before);
+    }
 }
