@@ -179,6 +179,90 @@ fn a_cone_frustum_closes_with_and_without_a_seam() {
     }
 }
 
+/// A solid under a cap that shrinks to a pole above the circle of the given radius about the z axis.
+fn capped(radius: f64, cap: Surface, pole: Pole) -> Builder {
+    let mut builder = Builder::new(BodyKind::Solid);
+    let vertex = builder.vertex(Point3::new(radius, 0.0, 0.0));
+    let rim = builder.edge(Curve::Circle { frame: upright(), radius }, vertex, vertex);
+    let face = match pole {
+        Pole::Implied => builder.face(cap, &[&[(rim, true)]]),
+        Pole::VertexLoop(at) => {
+            let face = builder.face(cap, &[&[(rim, true)]]);
+            let vertex = Some(builder.vertex(at));
+            let apex =
+                builder.brep.loops.push(Loop { face, outer: false, forward: true, coedges: vec![], vertex });
+            builder.brep.faces[face].loops.push(apex);
+            face
+        }
+        Pole::Seam(at) => {
+            let apex = builder.vertex(at);
+            let seam = builder.line(vertex, apex);
+            builder.face(cap, &[&[(rim, true), (seam, true), (seam, false)]])
+        }
+    };
+    assert!(builder.brep.faces[face].same_sense);
+    let down = frame(Point3::origin(), -Vector3::z(), Vector3::x());
+    builder.face(Surface::Plane(down), &[&[(rim, false)]]);
+    builder
+}
+
+enum Pole {
+    Implied,
+    VertexLoop(Point3<f64>),
+    Seam(Point3<f64>),
+}
+
+#[test]
+fn cones_and_hemispheres_close_at_their_poles() {
+    let top = Point3::new(0.0, 0.0, 4.0);
+    // Narrowing upwards: radius 3 + v tan(angle) is zero at v = 4.
+    let cone = || Surface::Cone { frame: upright(), radius: 3.0, semi_angle: -(3.0f64 / 4.0).atan() };
+    let sphere = || Surface::Sphere { frame: upright(), radius: 4.0 };
+    let (cone_volume, half_ball) = (PI * 9.0 * 4.0 / 3.0, PI * 64.0 * 2.0 / 3.0);
+    for (radius, cap, pole, exact) in [
+        (3.0, cone(), Pole::Implied, cone_volume),
+        (3.0, cone(), Pole::VertexLoop(top), cone_volume),
+        (3.0, cone(), Pole::Seam(top), cone_volume),
+        (4.0, sphere(), Pole::Implied, half_ball),
+        (4.0, sphere(), Pole::VertexLoop(top), half_ball),
+    ] {
+        let mesh = capped(radius, cap, pole).mesh(&FINE).expect("a cap");
+        assert_closed(&mesh);
+        let volume = mesh.signed_volume();
+        // All chords lie inside; off by at most the chord over the area of the cap.
+        let area = 2.0 * exact / radius.min(2.0);
+        assert!(volume < exact && volume > exact - 0.0101 * area, "{volume} of {exact}");
+    }
+}
+
+#[test]
+fn a_band_with_a_hole_where_it_might_be_cut_open() {
+    let mut builder = Builder::new(BodyKind::Surface);
+    let rings = [0.0, 6.0].map(|z| {
+        let vertex = builder.vertex(Point3::new(5.0, 0.0, z));
+        let frame = frame(Point3::new(0.0, 0.0, z), Vector3::z(), Vector3::x());
+        builder.edge(Curve::Circle { frame, radius: 5.0 }, vertex, vertex)
+    });
+    // Cut by planes z = 2 and z = 4 and by two half planes at ±0.3 rad, around the rings' common start.
+    let arc = |z: f64| Curve::Circle {
+        frame: frame(Point3::new(0.0, 0.0, z), Vector3::z(), Vector3::x()),
+        radius: 5.0,
+    };
+    let corner = |u: f64, z: f64| Point3::new(5.0 * u.cos(), 5.0 * u.sin(), z);
+    let [a, b, c, d] =
+        [(-0.3, 2.0), (0.3, 2.0), (0.3, 4.0), (-0.3, 4.0)].map(|(u, z)| builder.vertex(corner(u, z)));
+    let sides =
+        [builder.edge(arc(2.0), a, b), builder.line(b, c), builder.edge(arc(4.0), d, c), builder.line(d, a)];
+    let hole = [(sides[3], false), (sides[2], true), (sides[1], false), (sides[0], false)];
+    let side = Surface::Cylinder { frame: upright(), radius: 5.0 };
+    builder.face(side, &[&[(rings[0], true)], &[(rings[1], false)], &hole]);
+    let mesh = builder.mesh(&FINE).expect("a band");
+    let exact = 2.0 * PI * 5.0 * 6.0 - 0.6 * 5.0 * 2.0;
+    assert!((mesh.area() - exact).abs() < 2e-3 * exact, "{} of {exact}", mesh.area());
+    assert_eq!(Integrity::of(&mesh).crowded_edges, 0);
+    assert_eq!(Integrity::of(&mesh).turned_edges, 0);
+}
+
 #[test]
 fn the_same_body_gives_the_same_mesh() {
     let builder = turned([5.0, 5.0], 12.0, Surface::Cylinder { frame: upright(), radius: 5.0 }, true);

@@ -2,14 +2,15 @@
 
 use super::camera::{Place, Projected};
 use super::raster::Raster;
+use crate::brep::FaceId;
 use crate::mesh::Mesh;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use tiny_skia::{LineCap, LineJoin, Paint, PathBuilder, Pixmap, Stroke, Transform};
 
 /// Depth in pixels by which a line may lie behind the surface and still count as on it.
 const BIAS: f64 = 3.0;
 
-/// Draws what can be seen of the borders of all faces.
+/// Draws what can be seen of the borders of all faces, holes last.
 pub(super) fn draw(
     mesh: &Mesh,
     projected: &[Projected],
@@ -17,28 +18,36 @@ pub(super) fn draw(
     place: &Place,
     pixmap: &mut Pixmap,
 ) {
-    let chains = chains(&borders(mesh));
-    let outer = longest(&chains, projected);
-    for (at, chain) in chains.iter().enumerate() {
-        let (colour, width) = if Some(at) == outer { ([70, 78, 92], 1.4) } else { ([214, 48, 36], 2.0) };
-        stroke(chain, projected, raster, place, pixmap, colour, width);
+    let mut outer = Vec::new();
+    let mut holes = Vec::new();
+    for borders in borders(mesh).values() {
+        let mut chains = chains(borders);
+        if let Some(longest) = longest(&chains, projected) {
+            outer.push(chains.swap_remove(longest));
+        }
+        holes.extend(chains);
+    }
+    for chain in outer {
+        stroke(&chain, projected, raster, place, pixmap, [70, 78, 92], 1.4);
+    }
+    for chain in holes {
+        stroke(&chain, projected, raster, place, pixmap, [214, 48, 36], 2.0);
     }
 }
 
-/// Directed edges that have no neighbour of the same face.
-fn borders(mesh: &Mesh) -> Vec<[u32; 2]> {
-    let mut uses: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
-    for (at, &[a, b, c]) in mesh.triangles.iter().enumerate() {
-        for [from, to] in [[a, b], [b, c], [c, a]] {
-            uses.entry([from, to]).or_default().push(at);
-        }
-    }
+/// Directed edges of each face that have no neighbour of the same face.
+fn borders(mesh: &Mesh) -> BTreeMap<Option<FaceId>, Vec<[u32; 2]>> {
     let face = |at: usize| mesh.faces.get(at).copied();
-    let same_face = |at: usize, other: &Vec<usize>| other.iter().any(|&o| face(o) == face(at));
-    let is_border =
-        |edge: &[u32; 2], at: usize| !uses.get(&[edge[1], edge[0]]).is_some_and(|o| same_face(at, o));
-    let lone = uses.iter().filter(|(edge, triangles)| triangles.iter().any(|&at| is_border(edge, at)));
-    lone.map(|(edge, _)| *edge).collect()
+    let sides = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]];
+    let mut uses = BTreeSet::new();
+    for (at, &corners) in mesh.triangles.iter().enumerate() {
+        uses.extend(sides(corners).map(|[from, to]| (face(at), from, to)));
+    }
+    let mut borders: BTreeMap<_, Vec<_>> = BTreeMap::new();
+    for &(face, from, to) in uses.iter().filter(|&&(face, from, to)| !uses.contains(&(face, to, from))) {
+        borders.entry(face).or_default().push([from, to]);
+    }
+    borders
 }
 
 /// Joins directed edges end to start, as long as they go on.
@@ -62,7 +71,7 @@ fn chains(borders: &[[u32; 2]]) -> Vec<Vec<u32>> {
     chains
 }
 
-/// The chain with the greatest length in the picture: the outer border, when the view is one face.
+/// The chain with the greatest length in the picture: a face's outer border.
 fn longest(chains: &[Vec<u32>], projected: &[Projected]) -> Option<usize> {
     let length = |chain: &Vec<u32>| -> f64 {
         let step = |pair: &[u32]| {

@@ -92,7 +92,7 @@ pub struct Request<'a> {
 
 impl Request<'_> {
     /// Time limit that suits parts of some thousand faces and meshes of some ten thousand triangles.
-    pub const DEFAULT_TIMEOUT: Duration = Duration::from_mins(5);
+    pub const DEFAULT_TIMEOUT: Duration = Duration::from_secs(300);
 }
 
 /// What a program found in a file; a figure that it does not give is absent.

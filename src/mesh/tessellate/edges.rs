@@ -11,6 +11,9 @@ const DEEPEST: u32 = 12;
 /// Pieces of a closed edge at least, so that it encloses an area.
 const CLOSED_PIECES: u32 = 4;
 
+/// Pieces of another curved edge at least, so that two edges between the same vertices never share a chord.
+const OPEN_PIECES: u32 = 2;
+
 /// Share of an edge within which two breaks count as one.
 const SAME_PARAMETER: f64 = 1e-9;
 
@@ -47,8 +50,8 @@ pub(super) fn divide(
     Ok(samples)
 }
 
-/// Ends of the pieces that are divided on their own: knots, where the curve may bend suddenly, and enough
-/// of them for a closed edge; the last is `to`.
+/// Ends of the pieces that are divided on their own: knots, where the curve may bend suddenly, and the
+/// least count of them; the last is `to`.
 fn breaks(curve: &Curve, [from, to]: [f64; 2], closed: bool) -> Vec<f64> {
     let mut breaks = Vec::new();
     if let Curve::Nurbs(nurbs) = curve {
@@ -59,10 +62,13 @@ fn breaks(curve: &Curve, [from, to]: [f64; 2], closed: bool) -> Vec<f64> {
         let shifted = turns.iter().flat_map(|turn| knots.iter().map(move |knot| knot + turn));
         breaks.extend(shifted.filter(|t| (t - from) * (t - to) < 0.0));
     }
-    if closed {
-        let share = |k: u32| from + (to - from) * f64::from(k) / f64::from(CLOSED_PIECES);
-        breaks.extend((1..CLOSED_PIECES).map(share));
-    }
+    let pieces = match curve {
+        Curve::Line { .. } => 1,
+        _ if closed => CLOSED_PIECES,
+        _ => OPEN_PIECES,
+    };
+    let share = |k: u32| from + (to - from) * f64::from(k) / f64::from(pieces);
+    breaks.extend((1..pieces).map(share));
     breaks.push(to);
     breaks.sort_by(|a, b| if from < to { a.total_cmp(b) } else { b.total_cmp(a) });
     breaks.dedup_by(|a, b| (*a - *b).abs() <= SAME_PARAMETER * (to - from).abs());

@@ -17,8 +17,8 @@ use super::Mesh;
 use crate::brep::{BodyId, Brep, EdgeId, FaceId, ParameterLoopError, VertexId};
 use crate::geometry::{Carried, Curve, Surface};
 use crate::math::{Point3, Vector3};
-use boundary::SharedEdge;
-use region::{Region, RegionError};
+use boundary::{Context, SharedEdge};
+use region::{Corner, Region, RegionError};
 use std::collections::BTreeMap;
 
 /// How far triangles may be from the surfaces.
@@ -40,8 +40,10 @@ impl Tolerances {
         Self { chord: 1e-3 * diagonal, angle: 20f64.to_radians() }
     }
 
+    /// Tolerances for edges that cross as polygons. By the chord alone, since two arcs that touch in a cusp
+    /// keep their order when each is divided by its own bend, and lose it when divided by equal angles.
     fn finer(self) -> Self {
-        Self { chord: 0.25 * self.chord, angle: 0.5 * self.angle }
+        Self { chord: 0.125 * self.chord, angle: f64::INFINITY }
     }
 }
 
@@ -104,6 +106,16 @@ pub enum TessellateError {
         /// Kind of its surface.
         kind: &'static str,
     },
+    /// Two vertices of a face stand at one place of its surface's parameters.
+    #[error("two vertices of a face on a {kind} are one place near ({:.6}, {:.6}, {:.6})", .place.x, .place.y, .place.z)]
+    CoincidentVertices {
+        /// The face.
+        face: FaceId,
+        /// Kind of its surface.
+        kind: &'static str,
+        /// Where, in file units.
+        place: Point3<f64>,
+    },
     /// Bounds of a face cross or touch, also when sampled finely.
     #[error("bounds of a face on a {kind} cross or touch near ({:.6}, {:.6}, {:.6})", .place.x, .place.y, .place.z)]
     CrossingBounds {
@@ -128,6 +140,7 @@ impl TessellateError {
             | Self::Bounds { face, .. }
             | Self::WindingBounds { face }
             | Self::DegenerateFace { face, .. }
+            | Self::CoincidentVertices { face, .. }
             | Self::CrossingBounds { face, .. } => Some(*face),
             Self::Tolerances { .. } | Self::Curve { .. } | Self::EdgeRange { .. } | Self::TooManyVertices => {
                 None
@@ -222,15 +235,16 @@ fn attempt(
         for coedge in brep.coedges_of(face) {
             builder.add_edge(brep.coedges[coedge].edge, edge_tolerances)?;
         }
-        let loops = boundary::loops(brep, face, tolerances, &builder.edges)?;
-        let budget = Tolerances::MOST_VERTICES.saturating_sub(builder.mesh.vertices.len());
         let domain = Wrapped::of(surface);
+        let loops = builder.loops(face, &domain, tolerances)?;
+        let budget = Tolerances::MOST_VERTICES.saturating_sub(builder.mesh.vertices.len());
         let evaluate = |u: f64, v: f64| domain.derivatives(u, v);
         let region = region::triangulate(&loops, tolerances, budget, &evaluate).map_err(|error| {
             let kind = surface.kind();
             match error {
                 RegionError::Degenerate => TessellateError::DegenerateFace { face, kind },
                 RegionError::Crossing(place) => TessellateError::CrossingBounds { face, kind, place },
+                RegionError::Coincident(place) => TessellateError::CoincidentVertices { face, kind, place },
                 RegionError::TooMany => TessellateError::TooManyVertices,
             }
         })?;
@@ -308,6 +322,28 @@ impl Builder<'_> {
         }
         self.edges.insert(edge, SharedEdge { samples, vertices });
         Ok(())
+    }
+
+    fn loops(
+        &mut self,
+        face: FaceId,
+        surface: &Wrapped,
+        tolerances: &Tolerances,
+    ) -> Result<Vec<Vec<Corner>>, TessellateError> {
+        let brep = self.brep;
+        let mut vertex_loops = Vec::new();
+        for vertex in brep.faces[face].loops.iter().filter_map(|&bound| brep.loops[bound].vertex) {
+            let point = brep.vertices[vertex].point;
+            vertex_loops.push(Corner { uv: [0.0; 2], vertex: self.vertex(vertex)?, point });
+        }
+        let edges = std::mem::take(&mut self.edges);
+        let mut push = |point| self.push(point);
+        let (edges_given, vertex_loops) = (&edges, vertex_loops.as_slice());
+        let mut context =
+            Context { brep, face, surface, tolerances, edges: edges_given, vertex_loops, push: &mut push };
+        let loops = boundary::loops(&mut context);
+        self.edges = edges;
+        loops
     }
 
     fn add_region(&mut self, face: FaceId, region: &Region, surface: &Wrapped) {

@@ -50,6 +50,8 @@ pub(super) struct Region {
 pub(super) enum RegionError {
     /// The boundary has no extent in the parameter plane, or is not finite.
     Degenerate,
+    /// Two vertices of the mesh stand at one place of the parameter plane.
+    Coincident(Point3<f64>),
     /// Two pieces of the boundary cross near the point.
     Crossing(Point3<f64>),
     /// More points than the budget allows.
@@ -134,7 +136,7 @@ impl<E: Fn(f64, f64) -> SurfaceDerivatives> Work<'_, E> {
                 if let Some(&vertex) = known.get(&place) {
                     let node = self.nodes[self.cdt.vertex(vertex).data().node as usize];
                     if node.vertex != Some(corner.vertex) {
-                        return Err(RegionError::Crossing(corner.point));
+                        return Err(RegionError::Coincident(corner.point));
                     }
                     handles.push(vertex);
                     continue;
