@@ -5,7 +5,7 @@
 
 use crate::diagnostic::Sink;
 use crate::exchange::Patch;
-use crate::model::{ChangeSet, Model};
+use crate::model::{ChangeSet, Model, Origin};
 use crate::source::{Source, SourceTooLarge};
 use crate::step::{self, ExchangeStructure};
 
@@ -142,6 +142,14 @@ impl Document {
     #[must_use]
     pub fn source(&self) -> &Source {
         self.structure.source()
+    }
+
+    /// Line of a record, from 1; `None` when the file has no such record.
+    #[must_use]
+    pub fn line_of(&self, origin: Origin) -> Option<usize> {
+        let Origin::Instance(name) = origin else { return None };
+        let instance = self.structure.instance(step::InstanceName(name))?;
+        Some(self.source().position(instance.span().start).line)
     }
 
     /// What the file means.

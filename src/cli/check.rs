@@ -13,6 +13,7 @@ use crate::job::failure::PartError;
 use crate::job::file::ValidateSettings;
 use crate::job::judge::{first_missing, judge};
 use crate::job::measure::Figures;
+use crate::job::own_check::{OwnFinding, own_findings};
 use crate::job::part::Read;
 use crate::job::report::{DiagnosticReport, Failure};
 use crate::validate::Verdict;
@@ -28,6 +29,7 @@ struct Checked {
     diagnostics: Vec<DiagnosticReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     figures: Option<Figures>,
+    findings: Vec<OwnFinding>,
     validators: Vec<Verdict>,
 }
 
@@ -61,6 +63,7 @@ fn one(path: &Path, settings: &ValidateSettings, printer: &mut Printer) -> Check
         failure: None,
         diagnostics: Vec::new(),
         figures: None,
+        findings: Vec::new(),
         validators: Vec::new(),
     };
     match examine(path, settings, &mut checked, printer) {
@@ -91,18 +94,22 @@ fn examine(
         read.diagnostics.kept().iter().map(|fact| DiagnosticReport::new(fact, source)).collect();
     checked.figures = Some(Figures::of(&model));
     read.refuse_damage()?;
+    checked.findings = own_findings(&read.document, &model, 1.0);
     let judged = judge(settings, path, &model, None)?;
     for unasked in judged.unasked {
         printer.message(Severity::Warning, &format!("{}: {unasked}", path.display()));
     }
     checked.validators = judged.verdicts;
     let sound = read.diagnostics.worst() != Some(Severity::Error);
-    Ok(sound && checked.validators.iter().all(|verdict| verdict.accepted))
+    Ok(sound && checked.findings.is_empty() && checked.validators.iter().all(|verdict| verdict.accepted))
 }
 
 fn plain(checked: &Checked) -> String {
     let mut text =
         format!("{}: {}\n", checked.part, if checked.accepted { "accepted" } else { "not accepted" });
+    for finding in &checked.findings {
+        text += &format!("  {finding}\n");
+    }
     for verdict in &checked.validators {
         let word = if verdict.accepted { "accepts it" } else { "refuses it" };
         text += &format!("  {} {word}\n", verdict.validator.as_str());

@@ -14,6 +14,7 @@ pub mod nearest;
 mod node;
 pub mod operate;
 pub mod output;
+pub mod own_check;
 pub mod part;
 pub mod plan;
 pub mod read;

@@ -60,21 +60,20 @@ pub fn own_findings(document: &Document, model: &Model, growth: f64) -> Vec<OwnF
 }
 
 /// Findings of a result that its input does not have: another fact, or the same on another record.
-#[must_use]
-pub fn new_findings(before: &[OwnFinding], after: Vec<OwnFinding>) -> Vec<OwnFinding> {
+pub fn new_findings<'a>(
+    before: &'a [OwnFinding],
+    after: &'a [OwnFinding],
+) -> impl Iterator<Item = &'a OwnFinding> {
     let mut known: BTreeMap<(&str, &str), usize> = BTreeMap::new();
     for finding in before {
         *known.entry((&finding.code, &finding.entity)).or_insert(0) += 1;
     }
-    let is_new = |finding: &OwnFinding| match known.get_mut(&(finding.code.as_str(), finding.entity.as_str())) {
-        Some(count) if *count > 0 => {
-            *count -= 1;
-            false
-        }
-        _ => true,
-    };
-    let mut is_new = is_new;
-    after.into_iter().filter(|finding| is_new(finding)).collect()
+    after.iter().filter(move |finding| {
+        let count = known.entry((&finding.code, &finding.entity)).or_insert(0);
+        let is_new = *count == 0;
+        *count = count.saturating_sub(1);
+        is_new
+    })
 }
 
 fn describe(document: &Document, model: &Model, finding: &Finding) -> OwnFinding {

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::own_check::OwnFinding;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::source::Source;
 use crate::validate::Verdict;
@@ -81,6 +82,8 @@ pub struct PartReport {
     /// The output, read again.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub after: Option<super::measure::Figures>,
+    /// Facts that the output violates by our own check, as its input did: a new one fails the part.
+    pub findings: Vec<OwnFinding>,
     /// Answers of other programs about the output.
     pub validators: Vec<Verdict>,
     /// Wall time.
@@ -182,6 +185,7 @@ impl PartReport {
             diagnostic_counts: BTreeMap::new(),
             before: None,
             after: None,
+            findings: Vec::new(),
             validators: Vec::new(),
             seconds: 0.0,
             peak_bytes: None,

@@ -10,6 +10,7 @@ use super::judge;
 use super::measure::Figures;
 use super::operate::operate;
 use super::output::Staged;
+use super::own_check::{OwnFinding, new_findings, own_findings};
 use super::part::Read;
 use super::plan::Part;
 use super::report::{DiagnosticReport, PartReport, Report, Status, WritePath};
@@ -78,11 +79,11 @@ fn go(job: &Job, part: &Part, mode: Mode, stamp: &Stamp, report: &mut PartReport
     let mut read = Read::file(&part.input)?;
     let result = changed_bytes(job, &mut read, stamp, report);
     report.take_diagnostics(&read.diagnostics, read.document.source());
-    let changed = result?;
+    let Changed { bytes: changed, findings } = result?;
     // The input's bytes serve again when nothing changed: a copy would double the memory.
     let bytes = changed.as_deref().unwrap_or_else(|| read.document.source().bytes());
     let needs_model = !job.operation.is_empty() || !job.also.is_empty() || !job.validate.with.is_empty();
-    let after = if needs_model { Some(read_again(bytes, &part.output, report)?) } else { None };
+    let after = if needs_model { Some(read_again(bytes, &part.output, &findings, report)?) } else { None };
     if mode == Mode::DryRun {
         return Ok(());
     }
@@ -104,17 +105,25 @@ fn go(job: &Job, part: &Part, mode: Mode, stamp: &Stamp, report: &mut PartReport
     staged.commit().map_err(PartError::Output)
 }
 
-/// The bytes of the result; `None` when nothing changes.
+/// What a job makes of an input.
+#[derive(Debug, Default)]
+struct Changed {
+    /// The bytes of the result; `None` when nothing changes.
+    bytes: Option<Vec<u8>>,
+    /// Facts that the input already violated.
+    findings: Vec<OwnFinding>,
+}
+
 fn changed_bytes(
     job: &Job,
     read: &mut Read,
     stamp: &Stamp,
     report: &mut PartReport,
-) -> Result<Option<Vec<u8>>, PartError> {
+) -> Result<Changed, PartError> {
     read.refuse_damage()?;
     report.write_path = Some(WritePath::Verbatim);
     if job.operation.is_empty() {
-        return Ok(None);
+        return Ok(Changed::default());
     }
     let model = read.model();
     report.before = Some(Figures::of(&model));
@@ -127,14 +136,20 @@ fn changed_bytes(
     let patch = read.document.lower(&model, &changes, stamp)?;
     report.edits = Some(patch.counts().into());
     if patch.is_empty() {
-        return Ok(None);
+        return Ok(Changed::default());
     }
     report.write_path = Some(WritePath::Patched);
-    Ok(Some(patch.apply(read.document.source().bytes())))
+    let bytes = Some(patch.apply(read.document.source().bytes()));
+    Ok(Changed { bytes, findings: own_findings(&read.document, &model, 1.0) })
 }
 
 /// Reads the result as anybody else would, and compares it with the input.
-fn read_again(bytes: &[u8], output: &Path, report: &mut PartReport) -> Result<Model, PartError> {
+fn read_again(
+    bytes: &[u8],
+    output: &Path,
+    known: &[OwnFinding],
+    report: &mut PartReport,
+) -> Result<Model, PartError> {
     let extension = output.extension().and_then(|e| e.to_str()).unwrap_or_default();
     let mut read = Read::bytes(bytes.to_vec(), extension)?;
     let model = read.model();
@@ -153,6 +168,12 @@ fn read_again(bytes: &[u8], output: &Path, report: &mut PartReport) -> Result<Mo
         if *count > before && report.before.is_some() {
             findings.push(format!("{code}: {before} before, {count} after"));
         }
+    }
+    if report.write_path == Some(WritePath::Patched) {
+        let growth = report.before.as_ref().map_or(1.0, |before| before.growth(&after));
+        let own = own_findings(&read.document, &model, growth);
+        findings.extend(new_findings(known, &own).map(ToString::to_string));
+        report.findings = own;
     }
     report.after = Some(after);
     if findings.is_empty() { Ok(model) } else { Err(PartError::Check(findings)) }

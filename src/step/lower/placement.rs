@@ -64,10 +64,6 @@ impl Lowering<'_> {
                 self.request_location(target, Coordinates::Three(new.origin.coords.into()))?;
                 self.request_axis(target, "axis", old.map(|f| f.z), new.z)
             }
-            NewPlacement::Plane { origin, x } => {
-                self.request_location(target, Coordinates::Two([origin.x, origin.y]))?;
-                self.request_direction(target, "ref_direction", Coordinates::Two([x.x, x.y]))
-            }
         }
     }
 
@@ -128,7 +124,6 @@ impl Lowering<'_> {
                 let axis = self.append_direction(new.z.as_slice())?;
                 self.append_referring("AXIS1_PLACEMENT", &[location, axis])
             }
-            NewPlacement::Plane { origin, x } => self.append_frame2(origin, x),
         }
     }
 

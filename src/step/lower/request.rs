@@ -2,7 +2,7 @@
 
 use super::super::exchange_structure::InstanceName;
 use crate::geometry::{Curve, Curve2d};
-use crate::math::{Frame, Point2, Vector2};
+use crate::math::Frame;
 use crate::source::Span;
 
 /// A reference token in the file, and the content that whatever stands behind it shall have.
@@ -88,13 +88,6 @@ pub(super) enum NewPlacement {
         old: Option<Frame>,
         /// As wanted.
         new: Frame,
-    },
-    /// `AXIS2_PLACEMENT_2D`: origin and first axis.
-    Plane {
-        /// Origin.
-        origin: Point2<f64>,
-        /// First axis, unit length.
-        x: Vector2<f64>,
     },
     /// `AXIS1_PLACEMENT`: origin and axis of the frame.
     Axis {
