@@ -6,8 +6,8 @@ use super::arguments::InspectArguments;
 use super::exit_code;
 use super::print::Printer;
 use super::show;
+use crate::job::contents::{Contents, contents};
 use crate::job::failure::PartError;
-use crate::job::inventory::{Inventory, inventory};
 use crate::job::operate::OperateError;
 use crate::job::part::Read;
 use crate::job::select;
@@ -15,8 +15,8 @@ use crate::job::select;
 /// Inspects a part and gives the exit code.
 pub fn inspect(arguments: &InspectArguments, printer: &mut Printer) -> u8 {
     match seen(arguments, printer) {
-        Ok(inventory) => {
-            let text = if arguments.json { json(&inventory) } else { plain(&inventory) };
+        Ok(contents) => {
+            let text = if arguments.json { json(&contents) } else { plain(&contents) };
             printer.data(&text);
             exit_code::DONE
         }
@@ -27,7 +27,7 @@ pub fn inspect(arguments: &InspectArguments, printer: &mut Printer) -> u8 {
     }
 }
 
-fn seen(arguments: &InspectArguments, printer: &mut Printer) -> Result<Inventory, PartError> {
+fn seen(arguments: &InspectArguments, printer: &mut Printer) -> Result<Contents, PartError> {
     let mut read = Read::file(&arguments.part)?;
     let model = read.model();
     show::diagnostics(printer, &arguments.part, &read);
@@ -37,21 +37,21 @@ fn seen(arguments: &InspectArguments, printer: &mut Printer) -> Result<Inventory
         None if arguments.faces => model.brep.faces.ids().collect(),
         None => Vec::new(),
     };
-    Ok(inventory(&model, &faces))
+    Ok(contents(&model, &faces))
 }
 
-fn json(inventory: &Inventory) -> String {
+fn json(contents: &Contents) -> String {
     let mut text =
-        serde_json::to_string_pretty(inventory).expect("an inventory is a tree of texts and numbers");
+        serde_json::to_string_pretty(contents).expect("what a part holds is a tree of texts and numbers");
     text.push('\n');
     text
 }
 
-fn plain(inventory: &Inventory) -> String {
-    let figures = &inventory.figures;
+fn plain(contents: &Contents) -> String {
+    let figures = &contents.figures;
     let mut text = String::new();
     let mut line = |name: &str, value: String| {
-        let _ = writeln!(text, "{name:<10}{value}");
+        let _ = writeln!(text, "{name:<16}{value}");
     };
     line("schema", figures.schema.join(", "));
     line("units", figures.units.join(", "));
@@ -65,12 +65,12 @@ fn plain(inventory: &Inventory) -> String {
         let point = |[x, y, z]: [f64; 3]| format!("({x}, {y}, {z})");
         line("vertices", format!("within {} to {}", point(least), point(greatest)));
     }
-    for product in &inventory.products {
+    for product in &contents.products {
         let used = product.used_in.join(", ");
         let used = if used.is_empty() { String::new() } else { format!(" in {used}") };
         line("product", format!("{} {:?}{used}", product.id, product.name));
     }
-    for face in &inventory.faces {
+    for face in &contents.faces {
         let colour = face.colour.as_deref().unwrap_or("no colour");
         let neighbours = face.neighbours.join(" ");
         line("face", format!("{} {:?} {} {colour}, next to {neighbours}", face.id, face.name, face.surface));

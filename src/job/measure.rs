@@ -5,9 +5,8 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::brep::BodyKind;
 use crate::geometry::{Carried, Surface};
-use crate::model::Model;
+use crate::model::{Inventory, Model};
 
 /// What is inside a part.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -16,11 +15,13 @@ pub struct Figures {
     pub schema: Vec<String>,
     /// Units of length, one for each context: `mm`.
     pub units: Vec<String>,
-    /// Counts of `products`, `solids`, `shells`, `faces`, `edges`, `vertices`, `curves`.
+    /// Counts of `products`, `solids`, `surface_bodies`, `shells`, `faces`, `edges`, `vertices`, and `curves`
+    /// that belong to no edge.
     pub counts: BTreeMap<String, usize>,
     /// Count of surfaces by kind; those that are not read yet by the name of their entity.
     pub surfaces: BTreeMap<String, usize>,
-    /// Least and greatest coordinates of the vertices, in file units.
+    /// Least and greatest coordinates of the vertices, in file units; absent when units differ within the
+    /// file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vertex_extents: Option<[[f64; 3]; 2]>,
 }
@@ -29,28 +30,26 @@ impl Figures {
     /// Counts a model.
     #[must_use]
     pub fn of(model: &Model) -> Self {
-        let brep = &model.brep;
-        let solids = brep.bodies.iter().filter(|(_, body)| body.kind == BodyKind::Solid).count();
+        let inventory = Inventory::of(model);
+        let Inventory { schema, contexts, surfaces, unread_surfaces, vertex_extents, .. } = &inventory;
         let counts = [
-            ("products", model.products.len()),
-            ("bodies", brep.bodies.len()),
-            ("solids", solids),
-            ("shells", brep.shells.len()),
-            ("faces", brep.faces.len()),
-            ("edges", brep.edges.len()),
-            ("vertices", brep.vertices.len()),
-            ("curves", brep.curves.len()),
+            ("products", inventory.products),
+            ("solids", inventory.solids),
+            ("surface_bodies", inventory.surface_bodies),
+            ("shells", inventory.shells),
+            ("faces", inventory.faces),
+            ("edges", inventory.edges),
+            ("vertices", inventory.vertices),
+            ("curves", inventory.curves),
         ];
-        let mut surfaces = BTreeMap::new();
-        for face in brep.faces.ids() {
-            *surfaces.entry(kind(brep.surface_of(face))).or_insert(0) += 1;
-        }
+        let read = surfaces.iter().map(|(kind, count)| ((*kind).to_owned(), *count));
+        let unread = unread_surfaces.iter().map(|(entity, count)| (unread_kind(entity), *count));
         Self {
-            schema: model.schema.clone(),
-            units: model.contexts.iter().map(|context| context.length.name.clone()).collect(),
+            schema: schema.clone(),
+            units: contexts.iter().map(|context| context.length.name.clone()).collect(),
             counts: counts.into_iter().map(|(name, count)| (name.to_owned(), count)).collect(),
-            surfaces,
-            vertex_extents: vertex_extents(model),
+            surfaces: read.chain(unread).collect(),
+            vertex_extents: vertex_extents.map(|corners| corners.map(|corner| corner.coords.into())),
         }
     }
 
@@ -81,20 +80,10 @@ impl Figures {
 pub fn kind(surface: &Carried<Surface>) -> String {
     match surface {
         Carried::Read(surface) => surface.kind().to_owned(),
-        Carried::Unread { entity, .. } if entity.is_empty() => "missing".to_owned(),
-        Carried::Unread { entity, .. } => entity.clone(),
+        Carried::Unread { entity, .. } => unread_kind(entity),
     }
 }
 
-fn vertex_extents(model: &Model) -> Option<[[f64; 3]; 2]> {
-    let mut extents: Option<[[f64; 3]; 2]> = None;
-    for (_, vertex) in model.brep.vertices.iter() {
-        let point = [vertex.point.x, vertex.point.y, vertex.point.z];
-        let [least, greatest] = extents.get_or_insert([point, point]);
-        for k in 0..3 {
-            least[k] = least[k].min(point[k]);
-            greatest[k] = greatest[k].max(point[k]);
-        }
-    }
-    extents
+fn unread_kind(entity: &str) -> String {
+    if entity.is_empty() { "missing".to_owned() } else { entity.to_owned() }
 }

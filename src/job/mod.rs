@@ -4,9 +4,9 @@
 //! all, an input is never touched, and the same input and job give the same bytes.
 
 mod clock;
+pub mod contents;
 pub mod failure;
 pub mod file;
-pub mod inventory;
 mod json;
 pub mod judge;
 pub mod measure;

@@ -11,7 +11,7 @@ use crate::model::Model;
 
 /// What is inside a part.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Inventory {
+pub struct Contents {
     /// Counts and sizes.
     #[serde(flatten)]
     pub figures: Figures,
@@ -62,9 +62,9 @@ pub struct FaceEntry {
     pub neighbours: Vec<String>,
 }
 
-/// The inventory of a model, with the given faces in detail.
+/// The contents of a model, with the given faces in detail.
 #[must_use]
-pub fn inventory(model: &Model, faces: &[FaceId]) -> Inventory {
+pub fn contents(model: &Model, faces: &[FaceId]) -> Contents {
     let products = model.products.iter().enumerate().map(|(at, product)| {
         let uses = model.occurrences.iter().filter(|occurrence| occurrence.child == at);
         ProductEntry {
@@ -97,7 +97,7 @@ pub fn inventory(model: &Model, faces: &[FaceId]) -> Inventory {
             neighbours: neighbours(face).into_iter().map(|f| model.origins.faces[f].to_string()).collect(),
         }
     };
-    Inventory {
+    Contents {
         figures: Figures::of(model),
         products: products.collect(),
         faces: faces.iter().map(face_entry).collect(),
