@@ -211,12 +211,18 @@ impl<'a> Instance<'a> {
         self.structure.source.slice(self.span())
     }
 
+    /// Offset of what stands behind `=`, a scope included; `None` for a damaged head.
+    #[inline]
+    pub(super) fn body_start(&self) -> Option<usize> {
+        index::record_head(self.bytes(), self.record_span().start as usize).map(|head| head.body)
+    }
+
     /// What stands behind `=` and the scope, and before `;`.
     pub(super) fn body(&self) -> (usize, usize) {
         let bytes = self.bytes();
         let span = self.span();
         let end = content_end(bytes, span);
-        let start = index::record_head(bytes, span.start as usize).map_or(end, |head| head.body);
+        let start = self.body_start().unwrap_or(end);
         match bytes.get(start) {
             Some(b'&') => {
                 (self.structure.index.scope_bodies.get(&span.start).map_or(end, |&body| body as usize), end)

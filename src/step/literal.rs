@@ -7,6 +7,11 @@
 /// `None` when the text is no number or its value is not finite.
 #[must_use]
 pub fn parse_real(text: &[u8]) -> Option<f64> {
+    if let Some((value, end)) = super::decimal::real_at(text, 0)
+        && end == text.len()
+    {
+        return Some(value);
+    }
     // The number parser of the standard library also takes `inf` and `nan`, in which no digit occurs.
     let text = std::str::from_utf8(text).ok()?;
     let first = text.bytes().find(|byte| !matches!(byte, b'+' | b'-' | b'.'))?;

@@ -2,6 +2,7 @@
 
 mod alphabet;
 pub mod code;
+mod decimal;
 pub mod edit;
 pub mod entity;
 pub mod exchange_structure;

@@ -261,21 +261,29 @@ pub(crate) fn keyword_end(bytes: &[u8], at: usize) -> usize {
     run_end(bytes, at, is_keyword_byte)
 }
 
+/// Eight digits `0`, as [`leading_digits`] takes them.
+pub(super) const DIGIT_ZEROS: u64 = u64::from_le_bytes([b'0'; 8]);
+
+/// How many of eight bytes, the first in the lowest place, are digits before the first that is none.
+#[inline]
+pub(super) fn leading_digits(word: u64) -> usize {
+    const HIGH: u64 = 0xf0f0_f0f0_f0f0_f0f0;
+    const SIXES: u64 = 0x0606_0606_0606_0606;
+    // A digit has the high half 3, and keeps it when 6 is added. A carry out of a byte disturbs only bytes
+    // behind it, and that byte is no digit itself.
+    let others = ((word & HIGH) ^ DIGIT_ZEROS) | ((word.wrapping_add(SIXES) & HIGH) ^ DIGIT_ZEROS);
+    (others.trailing_zeros() / 8) as usize
+}
+
 /// End of the decimal digits from `at` on. Coordinates have many, so eight are looked at together.
 #[inline]
 pub(crate) fn digits_end(bytes: &[u8], mut at: usize) -> usize {
-    const HIGH: u64 = 0xf0f0_f0f0_f0f0_f0f0;
-    const ZEROS: u64 = 0x3030_3030_3030_3030;
-    const SIXES: u64 = 0x0606_0606_0606_0606;
     while let Some(chunk) = bytes.get(at..).and_then(|rest| rest.first_chunk::<8>()) {
-        let word = u64::from_le_bytes(*chunk);
-        // A digit has the high half 3, and keeps it when 6 is added. A carry out of a byte disturbs only bytes
-        // behind it, and that byte is no digit itself.
-        let others = ((word & HIGH) ^ ZEROS) | ((word.wrapping_add(SIXES) & HIGH) ^ ZEROS);
-        if others != 0 {
-            return at + (others.trailing_zeros() / 8) as usize;
+        let found = leading_digits(u64::from_le_bytes(*chunk));
+        at += found;
+        if found < 8 {
+            return at;
         }
-        at += 8;
     }
     run_end(bytes, at, |byte| byte.is_ascii_digit())
 }

@@ -255,18 +255,6 @@ fn wrong(field: Option<Parameter<'_>>, attribute: &'static str, expected: &'stat
     AttributeError { attribute, found, expected }
 }
 
-/// The text of a plainly written simple instance from its keyword on, without the semicolon.
-///
-/// Plain is `#digits = KEYWORD…;` with blanks or none around the equals sign, and nothing else: nearly every
-/// record of every real file. `None` sends all others the careful way.
-pub(super) fn plain_body<'a>(instance: Instance<'a>) -> Option<&'a [u8]> {
-    let text = instance.text().strip_suffix(b";")?;
-    let digits = text.get(1..)?.iter().position(|byte| !byte.is_ascii_digit())?;
-    let after_name = text[1 + digits..].trim_ascii_start();
-    let body = after_name.strip_prefix(b"=")?.trim_ascii_start();
-    body.first().filter(|byte| byte.is_ascii_alphabetic()).map(|_| body)
-}
-
 /// Keyword of a simple instance and what stands between its parentheses.
 ///
 /// Looks for no closing parenthesis but the last one, so that a long record is not read only to find its

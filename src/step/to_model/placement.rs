@@ -3,10 +3,11 @@
 use super::error::ReadError;
 use super::scope::Scope;
 use crate::math::{Frame, Point2, Point3, Vector2, Vector3};
+use crate::step::decimal;
 use crate::step::entity::Entity;
-use crate::step::literal;
-use crate::step::view::{plain_body, real, reference, simple_parts};
-use crate::step::{InstanceName, Parameter, Parameters};
+use crate::step::syntax::{string_end, trivia_end};
+use crate::step::view::{real, reference, simple_parts};
+use crate::step::{Instance, InstanceName, Parameter, Parameters};
 
 /// A `CARTESIAN_POINT` in space; a missing third coordinate is an error.
 pub(super) fn point3(scope: Scope<'_>, name: InstanceName) -> Result<Point3<f64>, ReadError> {
@@ -80,7 +81,7 @@ fn coordinates<const N: usize>(
     entity: Entity,
 ) -> Result<[f64; N], ReadError> {
     let instance = scope.instance(name)?;
-    if let Some(numbers) = plain_body(instance).and_then(|body| plain_numbers(body, entity)) {
+    if let Some(numbers) = plain_numbers(instance, entity) {
         return Ok(numbers);
     }
     let simple = simple_parts(instance).filter(|(keyword, _)| *keyword == entity.name().as_bytes());
@@ -95,25 +96,36 @@ fn coordinates<const N: usize>(
     list.and_then(|list| numbers(scope, name, list)).ok_or(ReadError::Coordinates(name))
 }
 
-/// The first `N` numbers of `KEYWORD('…',(…))` when it is written without blanks, comments or liberties;
-/// `None` sends everything else the careful way.
-fn plain_numbers<const N: usize>(body: &[u8], entity: Entity) -> Option<[f64; N]> {
-    let inside = body.strip_prefix(entity.name().as_bytes())?.strip_prefix(b"('")?;
-    let quote = inside.iter().position(|&byte| byte == b'\'')?;
-    let mut rest = inside[quote..].strip_prefix(b"',(")?;
-    let mut numbers = [0.0; N];
-    for number in &mut numbers {
-        let end = rest.iter().position(|&byte| matches!(byte, b',' | b')'))?;
-        let text = &rest[..end];
-        let plain = |byte: &u8| byte.is_ascii_digit() || matches!(byte, b'.' | b'-' | b'+' | b'E');
-        if !text.contains(&b'.') || !text.iter().all(plain) {
-            return None;
-        }
-        *number = literal::parse_real(text)?;
-        // Behind the last number nothing is left to read: a missing one is then found as no number.
-        rest = &rest[(end + usize::from(rest[end] == b','))..];
+/// The first `N` numbers of `KEYWORD('…',(…` when it is written without liberties; `None` sends everything
+/// else the careful way.
+#[inline]
+fn plain_numbers<const N: usize>(instance: Instance<'_>, entity: Entity) -> Option<[f64; N]> {
+    let bytes = instance.bytes();
+    // Behind `mark` and white space or comments, when it stands at `at`.
+    let behind = |at: usize, mark: u8| (*bytes.get(at)? == mark).then(|| trivia_end(bytes, at + 1));
+    let start = instance.body_start()?;
+    let keyword = entity.name().as_bytes();
+    if !bytes.get(start..)?.starts_with(keyword) {
+        return None;
     }
-    Some(numbers)
+    let name = behind(trivia_end(bytes, start + keyword.len()), b'(')?;
+    if bytes.get(name) != Some(&b'\'') {
+        return None;
+    }
+    let comma = trivia_end(bytes, string_end(bytes, name)?);
+    let mut at = behind(behind(comma, b',')?, b'(')?;
+    let mut numbers = [0.0; N];
+    for (index, number) in numbers.iter_mut().enumerate() {
+        if index > 0 {
+            at = behind(at, b',')?;
+        }
+        let (value, end) = decimal::real_at(bytes, at)?;
+        *number = value;
+        at = trivia_end(bytes, end);
+    }
+    // A damaged record may lack its end: what stands behind it does not count.
+    let closed = matches!(bytes.get(at), Some(b',' | b')')) && at < instance.span().end as usize;
+    closed.then_some(numbers)
 }
 
 fn numbers<const N: usize>(

@@ -3,7 +3,7 @@
 //! Follows no reference. Most records, points first, are looked at once here and never again by type.
 
 use crate::step::entity::Entity;
-use crate::step::view::{EntityView, plain_body};
+use crate::step::view::EntityView;
 use crate::step::{ExchangeStructure, InstanceName};
 
 /// Names of the records where meaning begins, each list in file order.
@@ -36,8 +36,9 @@ impl Roots {
     pub(super) fn find(file: &ExchangeStructure) -> Self {
         let mut roots = Self::default();
         // A point begins nothing, and most records are points: it is put aside by its first letters.
-        let point = |body: &[u8]| body.starts_with(b"CARTESIAN_POINT(");
-        let others = file.instances().filter(|instance| !plain_body(*instance).is_some_and(point));
+        let bytes = file.source().bytes();
+        let is_point = |at: usize| bytes.get(at..).is_some_and(|body| body.starts_with(b"CARTESIAN_POINT("));
+        let others = file.instances().filter(|instance| !instance.body_start().is_some_and(is_point));
         for view in others.filter_map(EntityView::of) {
             if let Some(list) = roots.list_of(&view) {
                 list.push(view.name());
