@@ -13,6 +13,7 @@ use crate::job::file::SideFormat;
 use crate::job::judge::{mesh_bytes, whole_mesh};
 use crate::job::output::Staged;
 use crate::job::part::Read;
+use crate::job::plan::normal;
 use crate::units::Length;
 
 /// Converts parts and gives the exit code.
@@ -64,11 +65,10 @@ fn places(arguments: &ConvertArguments) -> Result<Vec<(PathBuf, Target)>, String
         } else {
             output.clone()
         };
-        if places.iter().any(|(other, _)| *other == place) {
+        if places.iter().any(|(other, _)| normal(other) == normal(&place)) {
             return Err(format!("two parts would be written to {}", place.display()));
         }
-        let same =
-            |other: &PathBuf| place.canonicalize().ok().is_some_and(|p| other.canonicalize().ok() == Some(p));
+        let same = |other: &PathBuf| normal(&place) == normal(other);
         if arguments.inputs.iter().any(same) {
             return Err(format!("{} would be written over an input", place.display()));
         }

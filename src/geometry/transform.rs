@@ -48,7 +48,9 @@ impl ParameterMap {
         Self { linear: Matrix2::identity(), translation: Vector2::zeros() }
     }
 
-    fn stretch(u: f64, v: f64, translation: Vector2<f64>) -> Self {
+    /// Factors along both parameters, then a shift.
+    #[must_use]
+    pub fn stretch(u: f64, v: f64, translation: Vector2<f64>) -> Self {
         Self { linear: Matrix2::new(u, 0.0, 0.0, v), translation }
     }
 

@@ -44,6 +44,9 @@ pub enum PartError {
     /// The output cannot be written.
     #[error("the output cannot be written: {0}")]
     Output(FileError),
+    /// The program met a bug of its own.
+    #[error("internal error: please report it with this part and job")]
+    Internal,
 }
 
 /// Exit codes of a part. The command line documents them in `cli::exit_code`.
@@ -81,6 +84,7 @@ impl PartError {
             Self::Operate(_) | Self::Lower(_) | Self::Mesh(_) => code::OPERATION,
             Self::NoVerdict(ValidateError::Missing { .. }) => code::VALIDATOR_MISSING,
             Self::NoVerdict(ValidateError::Scratch { .. }) => code::IO,
+            Self::Internal => code::INTERNAL,
             Self::Check(_) | Self::Refused { .. } | Self::NoVerdict(_) => code::GATE,
         }
     }
@@ -100,6 +104,7 @@ impl PartError {
             Self::NoVerdict(ValidateError::Missing { .. }) => "validate.missing",
             Self::NoVerdict(_) => "validate.no-verdict",
             Self::Output(_) => "io.output",
+            Self::Internal => "internal.panic",
         };
         Failure { code: code.to_owned(), message: self.to_string() }
     }

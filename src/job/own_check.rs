@@ -15,6 +15,10 @@ use crate::model::{Model, Origin};
 /// exporter's habit and coarser than the digits that they write.
 const UNCERTAINTY_METRES: f64 = 1e-6;
 
+/// Factor within which two measurements of one gap agree: samples of an edge fall on other places once its
+/// curve or surface is written with other knots.
+const SAME_SIZE: f64 = 1.25;
+
 /// A fact that a part violates.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct OwnFinding {
@@ -59,20 +63,27 @@ pub fn own_findings(document: &Document, model: &Model, growth: f64) -> Vec<OwnF
     findings.iter().map(|finding| describe(document, model, finding)).collect()
 }
 
-/// Findings of a result that its input does not have: another fact, or the same on another record.
+/// Findings of a result that its input does not have: another fact, the same on another record, or one that
+/// grew by more than `growth`, by which the operation stretched the part.
 pub fn new_findings<'a>(
     before: &'a [OwnFinding],
     after: &'a [OwnFinding],
+    growth: f64,
 ) -> impl Iterator<Item = &'a OwnFinding> {
-    let mut known: BTreeMap<(&str, &str), usize> = BTreeMap::new();
+    let mut known: BTreeMap<(&str, &str), Vec<f64>> = BTreeMap::new();
     for finding in before {
-        *known.entry((&finding.code, &finding.entity)).or_insert(0) += 1;
+        let sizes = known.entry((&finding.code, &finding.entity)).or_default();
+        sizes.push(finding.size.unwrap_or(0.0));
     }
+    known.values_mut().for_each(|sizes| sizes.sort_by(f64::total_cmp));
     after.iter().filter(move |finding| {
-        let count = known.entry((&finding.code, &finding.entity)).or_insert(0);
-        let is_new = *count == 0;
-        *count = count.saturating_sub(1);
-        is_new
+        let size = finding.size.unwrap_or(0.0);
+        let sizes = known.entry((&finding.code, &finding.entity)).or_default();
+        let excused = sizes.iter().position(|&was| size <= was * growth * SAME_SIZE);
+        if let Some(at) = excused {
+            sizes.remove(at);
+        }
+        excused.is_none()
     })
 }
 

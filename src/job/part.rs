@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::failure::PartError;
 use super::output::FileError;
-use crate::diagnostic::Diagnostics;
+use crate::diagnostic::{Diagnostic, Diagnostics, Severity};
 use crate::document::Document;
 use crate::model::Model;
 
@@ -48,10 +48,28 @@ impl Read {
     /// [`PartError::Damaged`] with the place.
     pub fn refuse_damage(&self) -> Result<(), PartError> {
         let damage = self.diagnostics.kept().iter().find(|fact| DAMAGE.contains(&fact.code));
-        let Some(fact) = damage else { return Ok(()) };
+        damage.map_or(Ok(()), |fact| Err(self.damaged(fact)))
+    }
+
+    /// The first error in the file: an operation on what could be read would change half of the part.
+    ///
+    /// # Errors
+    /// [`PartError::Damaged`] with the place.
+    pub fn refuse_errors(&self) -> Result<(), PartError> {
+        let error = self.diagnostics.kept().iter().find(|fact| fact.severity == Severity::Error);
+        error.map_or(Ok(()), |fact| Err(self.damaged(fact)))
+    }
+
+    fn damaged(&self, fact: &Diagnostic) -> PartError {
         let place =
             fact.span.map(|span| format!(" (line {})", self.document.source().position(span.start).line));
-        Err(PartError::Damaged(format!("{}{}", fact.message, place.unwrap_or_default())))
+        let entity = fact.entity.as_ref().map(|entity| format!("{entity}: "));
+        PartError::Damaged(format!(
+            "{}{}{}",
+            entity.unwrap_or_default(),
+            fact.message,
+            place.unwrap_or_default()
+        ))
     }
 
     /// What the file means.

@@ -1,7 +1,7 @@
 //! From a job to its parts: every path is found and every clash refused before any data is touched.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use globset::{GlobBuilder, GlobMatcher};
 
@@ -103,16 +103,25 @@ pub fn parts(job: &Job, folder: &Path) -> Result<Vec<Part>, PlanError> {
     }
 }
 
-/// Path without `.` and `..`, as far as names tell; through links, where the file exists.
-fn normal(path: &Path) -> PathBuf {
-    if let Ok(real) = path.canonicalize() {
-        return real;
+/// The file that a path means, also when it and some of its folders do not exist yet: links are followed as
+/// far as there is something to follow, and `..` takes a name back.
+#[must_use]
+pub fn normal(path: &Path) -> PathBuf {
+    let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let mut place = PathBuf::new();
+    for part in absolute.components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir => {
+                place.pop();
+            }
+            _ => {
+                place.push(part);
+                place = place.canonicalize().unwrap_or(place);
+            }
+        }
     }
-    let name = path.file_name().map(PathBuf::from).unwrap_or_default();
-    match path.parent().map(Path::canonicalize) {
-        Some(Ok(folder)) => folder.join(name),
-        _ => path.components().collect(),
-    }
+    place
 }
 
 /// Files that a path or glob means.

@@ -1,6 +1,7 @@
 //! Runs a job over its parts: each is read, changed, written beside its place, read again, judged by
 //! others, and only then moved into place.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::Instant;
 
@@ -62,7 +63,8 @@ fn run_part(job: &Job, part: &Part, mode: Mode, stamp: &Stamp) -> PartReport {
     let start = Instant::now();
     let name = |path: &Path| path.to_string_lossy().into_owned();
     let mut report = PartReport::new(name(&part.input), name(&part.output));
-    match go(job, part, mode, stamp, &mut report) {
+    let done = catch_unwind(AssertUnwindSafe(|| go(job, part, mode, stamp, &mut report)));
+    match done.unwrap_or(Err(PartError::Internal)) {
         Ok(()) => report.status = Status::Done,
         Err(error) => {
             report.code = error.exit_code();
@@ -126,6 +128,7 @@ fn changed_bytes(
         return Ok(Changed::default());
     }
     let model = read.model();
+    read.refuse_errors()?;
     report.before = Some(Figures::of(&model));
     let mut changes = ChangeSet::default();
     for operation in &job.operation {
@@ -139,6 +142,8 @@ fn changed_bytes(
         return Ok(Changed::default());
     }
     report.write_path = Some(WritePath::Patched);
+    let stale = read.document.validation_properties();
+    report.losses.extend(stale.iter().map(|entity| stale_property(entity)));
     let bytes = Some(patch.apply(read.document.source().bytes()));
     Ok(Changed { bytes, findings: own_findings(&read.document, &model, 1.0) })
 }
@@ -172,7 +177,7 @@ fn read_again(
     if report.write_path == Some(WritePath::Patched) {
         let growth = report.before.as_ref().map_or(1.0, |before| before.growth(&after));
         let own = own_findings(&read.document, &model, growth);
-        findings.extend(new_findings(known, &own).map(ToString::to_string));
+        findings.extend(new_findings(known, &own, growth).map(ToString::to_string));
         report.findings = own;
     }
     report.after = Some(after);
@@ -199,6 +204,14 @@ fn side_files(
         report.side_files.push(path.to_string_lossy().into_owned());
     }
     Ok(staged)
+}
+
+fn stale_property(entity: &str) -> DiagnosticReport {
+    let message = "states a validation property of the part before the change; it is kept as it was";
+    DiagnosticReport {
+        entity: Some(entity.to_owned()),
+        ..warning("validation-property.stale", message.to_owned())
+    }
 }
 
 fn warning(code: &str, message: String) -> DiagnosticReport {

@@ -8,6 +8,7 @@
 //! source. They are disjoint, except that a record of the edition-1 scope construct spans the records of
 //! its scope.
 
+use super::code::Code;
 use super::index::{self, Index, RecordSpan};
 use super::parameter::{self, Comments, Parameters};
 use super::section::{Entry, Section, SectionKind};
@@ -88,6 +89,15 @@ impl ExchangeStructure {
         let list =
             record.and_then(|record| record.parameters().next()).and_then(|parameter| parameter.as_list());
         list.into_iter().flatten().filter_map(|name| name.as_str())
+    }
+
+    /// Reports every record whose parentheses do not close, or behind which something stands. The index does
+    /// not look inside records, so this is a pass of its own.
+    pub fn damaged_records(&self, sink: &mut dyn Sink) {
+        for instance in self.instances().filter(|instance| !instance.is_closed()) {
+            let message = "parentheses do not close where the record ends";
+            sink.report(Code::DamagedRecord.note_on(instance.name(), instance.span(), message.to_owned()));
+        }
     }
 
     /// Reports every reference to a name that neither a record nor the reference section defines.
@@ -215,6 +225,15 @@ impl<'a> Instance<'a> {
     #[inline]
     pub(super) fn body_start(&self) -> Option<usize> {
         index::record_head(self.bytes(), self.record_span().start as usize).map(|head| head.body)
+    }
+
+    /// Whether the parentheses close just before the semicolon.
+    fn is_closed(&self) -> bool {
+        let (start, end) = self.body();
+        let bytes = &self.bytes()[..end];
+        let Some(open) = memchr::memchr(b'(', &bytes[start..]).map(|at| start + at) else { return false };
+        parameter::list_end(bytes, open, self.structure.index.comments)
+            .is_some_and(|close| syntax::trivia_end(bytes, close) == end)
     }
 
     /// What stands behind `=` and the scope, and before `;`.

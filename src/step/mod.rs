@@ -17,6 +17,7 @@ pub mod section;
 pub mod string;
 pub mod syntax;
 pub mod to_model;
+mod validation_property;
 pub mod view;
 pub mod write;
 
@@ -28,4 +29,5 @@ pub use parameter::{Parameter, Parameters, Token};
 pub use reverse_index::ReverseIndex;
 pub use section::{Section, SectionKind};
 pub use to_model::to_model;
+pub use validation_property::validation_properties;
 pub use view::EntityView;

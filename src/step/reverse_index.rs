@@ -61,32 +61,12 @@ impl ReverseIndex {
     pub fn count(&self, structure: &ExchangeStructure, name: InstanceName) -> usize {
         self.users(structure, name).len()
     }
-
-    /// What goes when the instances at the positions `removed` go: these, and transitively every instance that
-    /// some removed one refers to and no other. An instance that nobody used before always stays, and so does
-    /// one that an anchor exports.
-    #[must_use]
-    pub fn orphans(&self, structure: &ExchangeStructure, removed: &BTreeSet<u32>) -> BTreeSet<u32> {
-        let anchored: BTreeSet<u32> = anchored(structure);
-        let mut gone = removed.clone();
-        let mut pending: Vec<u32> = removed.iter().copied().collect();
-        while let Some(position) = pending.pop() {
-            let Some(instance) = structure.instance_at(position) else { continue };
-            for target in references(instance).filter_map(|(name, _)| structure.position(name)) {
-                let unused = self.users_at(target).iter().all(|user| *user == target || gone.contains(user));
-                if unused && !anchored.contains(&target) && gone.insert(target) {
-                    pending.push(target);
-                }
-            }
-        }
-        gone
-    }
 }
 
 /// Positions of the instances that anchors export.
 pub(super) fn anchored(structure: &ExchangeStructure) -> BTreeSet<u32> {
     let names = structure.anchors().flat_map(|(_, item)| References { bytes: item, at: 0 });
-    names.filter_map(|(name, _)| structure.position(name)).collect()
+    names.filter_map(|(name, _)| structure.position(name?)).collect()
 }
 
 /// Calls `found(target, user)` once for every pair, in the order of the users.
@@ -109,7 +89,13 @@ pub fn unresolved_references(structure: &ExchangeStructure, sink: &mut dyn Sink)
     let external: BTreeSet<InstanceName> =
         structure.references().filter_map(|(name, _)| InstanceName::parse(name)).collect();
     for instance in structure.instances() {
-        for (target, span) in references(instance) {
+        for (target, span) in written(instance) {
+            let Some(target) = target else {
+                let message =
+                    format!("refers to a name of {} digits, more than 64 bits hold", span.len() - 1);
+                sink.report(Code::InstanceNameTooLarge.note_on(instance.name(), span, message));
+                continue;
+            };
             if structure.position(target).is_none() && !external.contains(&target) {
                 let message = format!("refers to {target}, which the file does not define");
                 sink.report(Code::UnresolvedReference.note_on(instance.name(), span, message));
@@ -120,18 +106,22 @@ pub fn unresolved_references(structure: &ExchangeStructure, sink: &mut dyn Sink)
 
 /// Every reference of an instance with its place, in the order of its text, repetitions included.
 pub fn references(instance: Instance<'_>) -> impl Iterator<Item = (InstanceName, Span)> {
+    written(instance).filter_map(|(name, span)| Some((name?, span)))
+}
+
+fn written(instance: Instance<'_>) -> References<'_> {
     let (start, end) = instance.body();
     References { bytes: &instance.bytes()[..end], at: start }
 }
 
-/// The `#n` of a text, outside strings and comments.
+/// The `#n` of a text, outside strings and comments; without name where 64 bits cannot hold it.
 struct References<'a> {
     bytes: &'a [u8],
     at: usize,
 }
 
 impl Iterator for References<'_> {
-    type Item = (InstanceName, Span);
+    type Item = (Option<InstanceName>, Span);
 
     fn next(&mut self) -> Option<Self::Item> {
         loop {
@@ -140,7 +130,8 @@ impl Iterator for References<'_> {
             match self.bytes[start] {
                 b'#' => {
                     self.at = syntax::digits_end(self.bytes, start + 1);
-                    if let Some(name) = InstanceName::parse(&self.bytes[start..self.at]) {
+                    if self.at > start + 1 {
+                        let name = InstanceName::parse(&self.bytes[start..self.at]);
                         return Some((name, syntax::span(start, self.at)));
                     }
                 }
@@ -173,12 +164,14 @@ mod tests {
     }
 
     #[test]
-    fn what_only_the_removed_used_goes_and_what_others_use_stays() {
-        // 2 goes and takes 3, 4 (used by 3) and 5 (used by 2 and 3); 6 is used by 7, 8 by nobody, 90 is anchored.
-        let structure =
-            read("#1=A(#2);#2=B(#3,#5,#6,#90);#3=C(#4,#5);#4=D();#5=E();#6=F();#7=G(#6);#8=H();#90=I();");
-        let index = ReverseIndex::build(&structure);
-        assert_eq!(index.orphans(&structure, &BTreeSet::from([1])), BTreeSet::from([1, 2, 3, 4]));
+    fn a_reference_of_forty_digits_and_an_open_parenthesis_are_reported() {
+        let structure = read(&format!("#1=A(#{});#2=B((1.,2.);#3=C();", "1".repeat(40)));
+        let mut sink = Vec::new();
+        structure.unresolved_references(&mut sink);
+        structure.damaged_records(&mut sink);
+        let found: Vec<_> = sink.iter().map(|fact| (fact.code, fact.entity.as_deref())).collect();
+        let expected = [("step.instance-name-too-large", Some("#1")), ("step.damaged-record", Some("#2"))];
+        assert_eq!(found, expected);
     }
 
     #[test]

@@ -13,6 +13,7 @@ use super::super::view::EntityView;
 use super::super::write::RecordWriter;
 use super::compose::{Body, Inherited};
 use super::{LowerError, Lowering};
+use crate::geometry::nurbs::KnotVector;
 use crate::source::Span;
 
 impl<'a> Lowering<'a> {
@@ -104,6 +105,21 @@ impl<'a> Lowering<'a> {
     /// The numbers of a list.
     pub(super) fn reals(&self, name: InstanceName, attribute: &'static str) -> Option<Vec<f64>> {
         Some(self.real_tokens(name, attribute)?.into_iter().map(|(_, value)| value).collect())
+    }
+
+    /// Whether a spline record writes these very knots, or is of a kind that implies clamped ones.
+    pub(super) fn writes_knots(
+        &self,
+        name: InstanceName,
+        multiplicities: &'static str,
+        knots: &'static str,
+        wanted: &KnotVector,
+    ) -> bool {
+        let (Some(counts), Some(values)) = (self.reals(name, multiplicities), self.reals(name, knots)) else {
+            return self.view(name).is_some_and(|view| CLAMPED.iter().any(|&entity| view.is(entity)));
+        };
+        let (wanted_values, wanted_counts) = wanted.to_multiplicities();
+        values == wanted_values && counts.iter().copied().eq(wanted_counts.iter().map(|&count| count as f64))
     }
 
     /// Whether the file already says these numbers, to the bit.
@@ -252,6 +268,10 @@ fn repeated_references(structure: &ExchangeStructure, user: u32) -> BTreeMap<Ins
     let runs = all.chunk_by(|a, b| a == b).filter(|run| run.len() > 1);
     runs.map(|run| (run[0], run.len())).collect()
 }
+
+/// Splines without knots in the file whose implied knots are clamped.
+const CLAMPED: [Entity; 4] =
+    [Entity::QuasiUniformCurve, Entity::QuasiUniformSurface, Entity::BezierCurve, Entity::BezierSurface];
 
 /// Users that speak of a record whatever its shape: style, layer, and tolerances that point at an item.
 const PRESENTATION: [Entity; 2] = [Entity::StyledItem, Entity::PresentationLayerAssignment];

@@ -2,11 +2,13 @@
 //! place or appended.
 
 use super::super::exchange_structure::InstanceName;
+use super::super::to_model::parameter_scale;
 use super::compose::{self, Body, Inherited, Value};
 use super::request::{Coordinates, NewCurve, NewPlacement, NewVector, group_equal};
 use super::{LowerError, Lowering};
-use crate::brep::{CurveId, EdgeId};
+use crate::brep::{CoedgeId, CurveId, EdgeId};
 use crate::geometry::nurbs::NurbsCurve;
+use crate::geometry::transform::ParameterMap;
 use crate::geometry::{Curve, Curve2d};
 use crate::math::{Vector2, Vector3};
 use crate::model::ChangeSet;
@@ -24,16 +26,20 @@ impl Lowering<'_> {
         let user = super::instance_name(self.model.origins.edges[edge])?;
         let curve = self.model.brep.edges[edge].curve;
         let curve_name = super::instance_name(self.model.origins.curves[curve])?;
-        let (mut token, target) = self.reference(user, "edge_geometry")?;
-        if target != curve_name {
-            let behind = self.reference(target, "curve_3d")?;
-            if behind.1 != curve_name {
-                return Err(LowerError::Attribute { name: target, attribute: "curve_3d" });
-            }
-            token = behind.0;
+        let (token, target) = self.reference(user, "edge_geometry")?;
+        let old = self.old_curve(curve);
+        if target == curve_name {
+            self.curves.add(target, token, NewCurve::Space { old, new: new.clone() });
+            return Ok(());
         }
-        let content = NewCurve::Space { old: self.old_curve(curve), new: new.clone() };
-        self.curves.add(curve_name, token, content);
+        match self.reference(target, "curve_3d") {
+            Ok((inner, behind)) if behind == curve_name => {
+                self.curves.add(behind, inner, NewCurve::Space { old, new: new.clone() });
+            }
+            // A trimmed curve or the like: its bounds are those of the edge, which has vertices, so the
+            // new curve stands for all of it.
+            _ => self.curves.add(target, token, NewCurve::Space { old: None, new: new.clone() }),
+        }
         Ok(())
     }
 
@@ -48,10 +54,29 @@ impl Lowering<'_> {
             let pcurve = super::instance_name(origin)?;
             let (_, representation) = self.reference(pcurve, "reference_to_curve")?;
             let (token, target) = self.first_reference(representation, "items")?;
-            let old = self.model.brep.coedges[coedge].pcurve.clone();
-            self.curves.add(target, token, NewCurve::Plane { old, new: new.clone() });
+            let unit = self.file_parameters(coedge, changes);
+            let in_file = |curve: &Curve2d| {
+                let unwritable = |_| LowerError::Unwritable { name: target, kind: "parameter curve" };
+                if unit.is_identity() {
+                    Ok(curve.clone())
+                } else {
+                    curve.transformed(&unit).map_err(unwritable)
+                }
+            };
+            let old = self.model.brep.coedges[coedge].pcurve.as_ref().map(in_file).transpose()?;
+            self.curves.add(target, token, NewCurve::Plane { old, new: in_file(new)? });
         }
         Ok(())
+    }
+
+    /// File parameters of a coedge's (new) surface from those of the model, which counts angles in radians.
+    fn file_parameters(&self, coedge: CoedgeId, changes: &ChangeSet) -> ParameterMap {
+        let brep = &self.model.brep;
+        let face = brep.loops[brep.coedges[coedge].in_loop].face;
+        let surface = changes.surfaces.get(&face).or_else(|| brep.surface_of(face).read());
+        let radians = self.model.context_of(face).angle.radians;
+        let [u, v] = surface.map_or([1.0, 1.0], |surface| parameter_scale(surface, radians));
+        ParameterMap::stretch(1.0 / u, 1.0 / v, Vector2::zeros())
     }
 
     /// Replaces curves that belong to no edge. All users follow: they asked for this curve by name.
@@ -169,7 +194,8 @@ impl Lowering<'_> {
         Ok(())
     }
 
-    /// Whether only the points of a spline differ, and the file lists as many as the model.
+    /// Whether only the points of a spline differ, from a net that the file itself writes: the model's is
+    /// another one where the file's knots were not clamped.
     fn keeps_net<const H: usize>(
         &self,
         target: InstanceName,
@@ -177,6 +203,7 @@ impl Lowering<'_> {
         new: &NurbsCurve<H>,
     ) -> bool {
         old.knots() == new.knots()
+            && self.writes_knots(target, "knot_multiplicities", "knots", new.knots())
             && old.points().iter().zip(new.points()).all(|(a, b)| a[H - 1].to_bits() == b[H - 1].to_bits())
             && self
                 .references(target, "control_points_list")

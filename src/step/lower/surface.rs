@@ -149,6 +149,8 @@ impl Lowering<'_> {
     fn keeps_surface_net(&self, target: InstanceName, old: &NurbsSurface, new: &NurbsSurface) -> bool {
         old.knots_u() == new.knots_u()
             && old.knots_v() == new.knots_v()
+            && self.writes_knots(target, "u_multiplicities", "u_knots", new.knots_u())
+            && self.writes_knots(target, "v_multiplicities", "v_knots", new.knots_v())
             && old.net().iter().zip(new.net()).all(|(a, b)| a[3].to_bits() == b[3].to_bits())
             && self
                 .references(target, "control_points_list")

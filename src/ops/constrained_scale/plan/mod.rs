@@ -67,6 +67,7 @@ pub fn plan(model: &Model, params: &Params) -> Result<Plan, OperationError> {
     let faces = params.scope.faces(model);
     scope::refuse_torn_neighbours(model, &faces)?;
     let mut notes = scope::staying(model, &faces);
+    notes.extend(scope::placed(model, &faces));
     let held = hold::find(model, &faces, params, &mut notes)?;
     let moves = matches!(params.mode, Hold::Pinned(Some(_))) && !held.bases.is_empty();
     if plain.is_identity() && !moves {

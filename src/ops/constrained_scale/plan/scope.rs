@@ -56,6 +56,24 @@ pub(super) fn refuse_torn_neighbours(model: &Model, scope: &BTreeSet<FaceId>) ->
 /// Faces of a shell that a note names; the rest is counted.
 const NAMED: usize = 8;
 
+/// A warning when scaled bodies are components of an assembly: the definition is scaled once, and the
+/// placements of its occurrences stay.
+pub(super) fn placed(model: &Model, scope: &BTreeSet<FaceId>) -> Option<Diagnostic> {
+    let products: BTreeSet<usize> =
+        scope.iter().filter_map(|&face| model.bodies[model.body_of(face)].product).collect();
+    let placed = model.occurrences.iter().filter(|occurrence| products.contains(&occurrence.child)).count();
+    (placed > 0).then(|| Diagnostic {
+        code: "scale.occurrences-stay",
+        severity: Severity::Warning,
+        entity: None,
+        span: None,
+        message: format!(
+            "{placed} occurrences in assemblies show the scaled definitions at the places and in the \
+             orientations that they had: distances between components are not scaled"
+        ),
+    })
+}
+
 /// One note for each shell of which some faces are scaled and some stay.
 pub(super) fn staying(model: &Model, scope: &BTreeSet<FaceId>) -> Vec<Diagnostic> {
     let shells: BTreeSet<ShellId> = scope.iter().map(|&f| model.brep.faces[f].shell).collect();
