@@ -9,7 +9,7 @@ use crate::model::{ChangeSet, Model, Origin};
 use crate::ops::OperationError;
 use crate::ops::constrained_scale::{
     Continuity, Energy, Freedom, Hold, Scaling,
-    plan::{HoldTarget, Params, Scope, plan},
+    plan::{HoldTarget, Params, Scope, inner_loops, plan},
 };
 use crate::source::Source;
 use crate::units::LengthUnit;
@@ -184,12 +184,6 @@ fn by_edge(model: &Model, faces: &[FaceId], name: u64) -> Result<HoldTarget, Ope
     found
         .map(HoldTarget::Edge)
         .ok_or_else(|| OperateError::Hold(format!("no edge of the faces in scope is `#{name}`")))
-}
-
-fn inner_loops(model: &Model, face: FaceId) -> Vec<LoopId> {
-    let loops = &model.brep.faces[face].loops;
-    let outer = loops.iter().position(|&l| model.brep.loops[l].outer).unwrap_or(0);
-    loops.iter().enumerate().filter(|&(at, _)| at != outer).map(|(_, &l)| l).collect()
 }
 
 /// Distance of a point from the middle of a loop's vertices and curve points: of two loops, the one

@@ -1,4 +1,4 @@
-//! Text of a job file to [`Node`]s to a [`Job`], with every error placed in the text.
+//! Text of a job file to `Node`s to a [`Job`], with every error placed in the text.
 
 use std::ops::Range;
 

@@ -43,7 +43,7 @@ pub struct Envelopes {
 
 /// Control points that must lie free between a held loop and the border, and between two held loops.
 ///
-/// Three: counting rows by knots, as published, forgets the multiplicity of the end knots (spec 3.3).
+/// Three: counting rows by knots, as published, forgets the multiplicity of the end knots.
 pub const GAP: usize = 3;
 
 impl Envelopes {

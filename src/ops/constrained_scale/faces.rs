@@ -2,7 +2,7 @@
 //!
 //! Several faces are scaled together so that a feature that passes through several of them gets one motion: the
 //! free points are eliminated face by face, and the reduced energies of a group are added before its motion is
-//! chosen (spec 3.8, 3.11).
+//! chosen.
 
 use super::ScaleError;
 use super::envelope::{Prepared, PreparedLoop};

@@ -1,5 +1,7 @@
 //! Which loops share a motion, and the refinement that may join more of them.
 
+use std::collections::BTreeMap;
+
 use super::ScaleError;
 use super::envelope::Prepared;
 use super::refine::{Refined, refine};
@@ -13,12 +15,14 @@ pub(super) struct Grouping {
     pub(super) root: Vec<Vec<usize>>,
     /// Loops joined because they are near.
     pub(super) merged: Vec<usize>,
+    /// Roots that were given up, with the root that took their place.
+    joined: BTreeMap<usize, usize>,
 }
 
 impl Grouping {
     /// As the tasks say.
     pub(super) fn new(tasks: &[FaceTask<'_>]) -> Self {
-        let mut first = std::collections::BTreeMap::new();
+        let mut first = BTreeMap::new();
         let mut count = 0;
         let root = tasks.iter().map(|task| {
             let roots = task.held.iter().map(|l| {
@@ -28,11 +32,17 @@ impl Grouping {
             });
             roots.collect()
         });
-        Self { root: root.collect(), merged: Vec::new() }
+        Self { root: root.collect(), merged: Vec::new(), joined: BTreeMap::new() }
     }
 
-    fn join(&mut self, a: usize, b: usize) {
+    /// Joins the groups that loops with these roots are in by now; roots may have been joined already.
+    fn join_roots(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.current(a), self.current(b));
+        if a == b {
+            return;
+        }
         let (keep, drop) = (a.min(b), a.max(b));
+        self.joined.insert(drop, keep);
         for root in self.root.iter_mut().flatten() {
             if *root == drop {
                 *root = keep;
@@ -40,6 +50,13 @@ impl Grouping {
         }
         self.merged.retain(|&m| m != drop);
         self.merged.push(keep);
+    }
+
+    fn current(&self, mut root: usize) -> usize {
+        while let Some(&kept) = self.joined.get(&root) {
+            root = kept;
+        }
+        root
     }
 
     /// Roots in order.
@@ -69,8 +86,8 @@ pub(super) fn refine_together(
             .zip(&grouping.root)
             .flat_map(|(r, root)| r.near_pairs.iter().map(|&(a, b)| (root[a], root[b])))
             .collect();
-        if let Some(&(a, b)) = near.first() {
-            grouping.join(a, b);
+        if !near.is_empty() {
+            near.iter().for_each(|&(a, b)| grouping.join_roots(a, b));
             continue;
         }
         if !level_up(&refined, grouping, least) {

@@ -11,7 +11,8 @@
 //! What it does not do: loops that meet the border, held loops on surfaces other than B-splines, different factors
 //! for parts of one model.
 //!
-//! Source: fix-and-stretch scaling with the corrections of `docs/decisions`; the slide reference is our own.
+//! Source: fix-and-stretch scaling with the corrections of
+//! `docs/decisions/constrained-scale.md`; the slide reference is our own.
 
 pub mod cells;
 pub mod energy;

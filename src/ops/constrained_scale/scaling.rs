@@ -82,7 +82,7 @@ pub struct Scaling {
 }
 
 impl Scaling {
-    /// Default for [`max_control_points`](Self::max_control_points): about 28 s of a plain prototype, 1.5 s here.
+    /// Default for [`max_control_points`](Self::max_control_points): what one core solves in a second or two.
     pub const MAX_CONTROL_POINTS: usize = 40_000;
 
     /// The given factors about the origin along the coordinate axes, all else default.

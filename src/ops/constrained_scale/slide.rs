@@ -2,7 +2,7 @@
 //!
 //! The published energy compares new and scaled surface at equal parameters. A held feature slips relative to the
 //! parameter lines, and on a curved surface that slip was mistaken for a displacement: it pushed features off the
-//! surface (spec 3.7).
+//! surface.
 
 use super::sampling::{Tangents, closest};
 use super::solve::{FaceSystem, Held};

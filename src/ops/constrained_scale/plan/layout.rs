@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
 use super::scope::face_name;
-use crate::brep::FaceId;
 use crate::brep::parameter_loop::{LoopSampling, parameter_loops};
+use crate::brep::{FaceId, LoopId};
 use crate::geometry::Surface;
 use crate::geometry::nurbs::NurbsSurface;
 use crate::model::Model;
@@ -45,6 +45,17 @@ pub(super) fn spline_of(model: &Model, face: FaceId) -> Option<&NurbsSurface> {
         Some(Surface::Nurbs(surface)) => Some(surface),
         _ => None,
     }
+}
+
+/// The loops of a B-spline face that can be held as holes, in the face's order; none for other faces, and
+/// for one whose loops cannot be traced in its parameters.
+#[must_use]
+pub fn inner_loops(model: &Model, face: FaceId) -> Vec<LoopId> {
+    let Some(layout) = spline_of(model, face).and_then(|_| lay_out(model, face).ok()) else {
+        return Vec::new();
+    };
+    let loops = model.brep.faces[face].loops.iter().enumerate();
+    loops.filter(|&(at, _)| layout.is_inner(at)).map(|(_, &bound)| bound).collect()
 }
 
 /// Layouts that were asked for, each computed once.

@@ -14,6 +14,7 @@ mod rigid;
 mod scope;
 mod stretch;
 
+pub use layout::inner_loops;
 pub use report::{FaceMeasures, GroupMeasures, LoopMeasures, Measures};
 pub use scope::Scope;
 
