@@ -208,6 +208,35 @@ fn a_shared_point_is_split_when_one_user_moves() {
     assert_eq!(after.model.brep.vertices[vertex].point, Point3::new(0.5, 0.0, 0.0));
 }
 
+/// A file with one free curve: degree 2 over knots that are not clamped, so that the model's net is not the
+/// file's.
+const UNCLAMPED: &str = "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;\nDATA;\n\
+    #1=CARTESIAN_POINT('',(0.,0.,0.));\n#2=CARTESIAN_POINT('',(1.,2.,0.));\n\
+    #3=CARTESIAN_POINT('',(3.,2.,1.));\n#4=CARTESIAN_POINT('',(4.,0.,1.));\n\
+    #5=B_SPLINE_CURVE_WITH_KNOTS('c',2,(#1,#2,#3,#4),.UNSPECIFIED.,.F.,.F.,(1,1,1,1,1,1,1),\
+    (0.,1.,2.,3.,4.,5.,6.),.UNSPECIFIED.);\n#6=GEOMETRIC_CURVE_SET('',(#5));\n\
+    #7=(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNIT_ASSIGNED_CONTEXT((#8,#9))REPRESENTATION_CONTEXT('',''));\n\
+    #8=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));\n\
+    #9=(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.));\n\
+    #10=SHAPE_REPRESENTATION('',(#6),#7);\nENDSEC;\nEND-ISO-10303-21;\n";
+
+#[test]
+fn a_curve_with_unclamped_knots_is_written_with_knots_that_fit_its_points() {
+    let part = read(UNCLAMPED.as_bytes().to_vec());
+    let [curve] = part.model.free_curves[..] else { panic!("one free curve") };
+    let old = part.model.brep.curves[curve].read().expect("read");
+    // By the blending of the middle span, C(2.5) = (P0 + 6 P1 + P2) / 8.
+    let middle = Point3::new(9.0 / 8.0, 14.0 / 8.0, 1.0 / 8.0);
+    assert!((old.point_at(2.5) - middle).norm() <= 1e-15);
+    let half = Affine::about(&Point3::origin(), Matrix3::identity() * 0.5);
+    let mut changes = ChangeSet::default();
+    changes.free_curves.insert(curve, old.transformed(&half).expect("a spline follows every map"));
+    let (_, after) = patched(&part, &changes);
+    let new = after.model.brep.curves[after.model.free_curves[0]].read().expect("read again");
+    assert!((new.point_at(2.5) - Point3::from(middle.coords * 0.5)).norm() <= 1e-15);
+    assert_nothing_dangles(&after);
+}
+
 #[test]
 fn corpus_parts_follow_a_rigid_motion_and_come_back_alike() {
     let angle = 0.3_f64;
