@@ -1,5 +1,6 @@
 //! The real program in a fresh folder: what it prints, what it leaves, and how it ends.
 
+mod accepted;
 mod jobs;
 mod parts;
 
