@@ -49,23 +49,23 @@ pub enum PartError {
     Internal,
 }
 
-/// Exit codes of a part. The command line documents them in `cli::exit_code`.
+/// Exit codes of a part: what a caller may rely on, and whether trying again makes sense.
 pub mod code {
     /// All well.
     pub const DONE: u8 = 0;
-    /// Ran, and failed its gate.
+    /// The program ran, and some part failed its gate or differs. Trying again gives the same.
     pub const GATE: u8 = 1;
-    /// Job file or usage wrong.
+    /// Command line or job file wrong. Nothing was touched.
     pub const USAGE: u8 = 2;
-    /// Input unreadable.
+    /// An input cannot be read as what it is. Trying again gives the same.
     pub const UNREADABLE: u8 = 3;
     /// The operation cannot be done on this part.
     pub const OPERATION: u8 = 4;
-    /// A required validator is missing.
+    /// A validator that the job requires is not installed. Nothing was touched.
     pub const VALIDATOR_MISSING: u8 = 5;
-    /// A resource ceiling was met.
+    /// A ceiling on memory, time or size was met: try again with more.
     pub const RESOURCE: u8 = 6;
-    /// Input or output failed; try again.
+    /// Reading or writing failed for a reason outside the file: try again.
     pub const IO: u8 = 7;
     /// A bug of the program.
     pub const INTERNAL: u8 = 70;
