@@ -241,7 +241,7 @@ impl<'a> Instance<'a> {
         let bytes = self.bytes();
         let span = self.span();
         let end = content_end(bytes, span);
-        let start = self.body_start().unwrap_or(end);
+        let start = self.body_start().unwrap_or(end).min(end);
         match bytes.get(start) {
             Some(b'&') => {
                 (self.structure.index.scope_bodies.get(&span.start).map_or(end, |&body| body as usize), end)

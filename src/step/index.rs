@@ -305,7 +305,7 @@ impl Indexer<'_, '_> {
             }
         }
         if kind == SectionKind::Data {
-            self.release_endsec();
+            self.release_endsec(body_start);
         }
         let body_end = self.at;
         if self.word_at(self.at).eq_ignore_ascii_case(b"ENDSEC") {
@@ -320,13 +320,17 @@ impl Indexer<'_, '_> {
         self.sections.push(Section { kind, span, body: syntax::span(body_start, body_end), parameters });
     }
 
-    /// When the last record lost its semicolon, it ends in `ENDSEC;`: goes back to before that word.
-    fn release_endsec(&mut self) {
+    /// When the last record of a section that begins at `body_start` lost its semicolon, it ends in `ENDSEC;`: goes
+    /// back to before that word.
+    fn release_endsec(&mut self, body_start: usize) {
         const WORD: &[u8] = b"ENDSEC";
         if self.word_at(self.at).eq_ignore_ascii_case(WORD) {
             return;
         }
-        let Some(last) = self.records.last_mut() else { return };
+        // A record of an earlier section is not this one's to shorten.
+        let Some(last) = self.records.last_mut().filter(|last| last.start as usize >= body_start) else {
+            return;
+        };
         let (start, end) = (last.start as usize, last.end as usize);
         let Some(text) = self.bytes[start..end].strip_suffix(b";") else { return };
         let text = text.trim_ascii_end();

@@ -61,6 +61,13 @@ fn parse(bytes: Vec<u8>) -> ExchangeStructure {
     ExchangeStructure::parse(Source::new(bytes).expect("small"), &mut Diagnostics::default())
 }
 
+#[test]
+fn a_data_section_without_records_leaves_the_record_before_it_alone() {
+    let bytes = b"ISO-10303-21;#1=ENDSEC;A(ENDSEC;A(ISO-10303-21;DATA;";
+    let structure = parse(bytes.to_vec());
+    assert!(structure.sections().iter().all(|section| section.span.end as usize <= bytes.len()));
+}
+
 proptest! {
     #[test]
     fn any_bytes_tile_and_read(bytes in soup()) {
@@ -71,7 +78,7 @@ proptest! {
             at = span.end;
         }
         prop_assert_eq!(at as usize, bytes.len());
-        let structure = parse(bytes);
+        let structure = parse(bytes.to_vec());
         structure.unresolved_references(&mut Diagnostics::default());
         for record in structure.header().chain(structure.instances().flat_map(|instance| instance.records())) {
             let inside = record.parameters_span();
