@@ -144,6 +144,13 @@ impl Document {
         self.structure.source()
     }
 
+    /// Whether a number may stand in the file that no finite one holds: a cheap look at the bytes, which errs on
+    /// the side of yes.
+    #[must_use]
+    pub fn may_overflow(&self) -> bool {
+        step::may_overflow(self.source().bytes())
+    }
+
     /// Line of a record, from 1; `None` when the file has no such record.
     #[must_use]
     pub fn line_of(&self, origin: Origin) -> Option<usize> {

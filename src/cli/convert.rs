@@ -104,7 +104,10 @@ fn one(
         Target::Off => Some(SideFormat::Off),
     };
     let bytes = match format {
-        None => None,
+        None => {
+            read.look_for_overflow();
+            None
+        }
         Some(format) => {
             let model = read.model();
             let unit = model.contexts.first().map(|context| &context.length);
@@ -113,7 +116,8 @@ fn one(
         }
     };
     show::diagnostics(printer, input, &read);
-    read.refuse_damage()?;
+    // The mesh of what could be read would be the mesh of half a part; a copy is whole whatever it means.
+    if bytes.is_some() { read.refuse_errors() } else { read.refuse_damage() }?;
     let bytes = bytes.as_deref().unwrap_or_else(|| read.document.source().bytes());
     Staged::write(output, bytes).and_then(Staged::commit).map_err(PartError::Output)
 }

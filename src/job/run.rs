@@ -122,11 +122,13 @@ fn changed_bytes(
     stamp: &Stamp,
     report: &mut PartReport,
 ) -> Result<Changed, PartError> {
-    read.refuse_damage()?;
     report.write_path = Some(WritePath::Verbatim);
     if job.operation.is_empty() {
+        read.look_for_overflow();
+        read.refuse_damage()?;
         return Ok(Changed::default());
     }
+    read.refuse_damage()?;
     let model = read.model();
     read.refuse_errors()?;
     report.before = Some(Figures::of(&model));

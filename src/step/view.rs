@@ -31,6 +31,9 @@ pub struct AttributeError {
     pub expected: &'static str,
 }
 
+/// What [`AttributeError::found`] says of a real whose value is not finite.
+pub const OUT_OF_RANGE: &str = "a real out of range";
+
 impl<'a> EntityView<'a> {
     /// The view of an instance, unless its type is unknown.
     ///
@@ -244,7 +247,7 @@ fn wrong(field: Option<Parameter<'_>>, attribute: &'static str, expected: &'stat
         Some(Parameter::Omitted) => "`$`",
         Some(Parameter::Derived) => "`*`",
         Some(Parameter::Integer(..)) => "an integer",
-        Some(Parameter::Real(..)) => "a real out of range",
+        Some(Parameter::Real(..)) => OUT_OF_RANGE,
         Some(Parameter::String(..)) => "a string",
         Some(Parameter::Enumeration(..)) => "an enumeration value",
         Some(Parameter::Binary(..)) => "a binary value",

@@ -12,6 +12,8 @@ pub enum ModelCode {
     NotReadYet,
     /// Geometry whose data contradict themselves or the standard.
     BadGeometry,
+    /// A number beyond every finite one: whoever wrote it lost the value.
+    NotFinite,
     /// Topology that cannot be built: the element is left out or counts as unread.
     BadTopology,
     /// A chain of references that returns to itself.
@@ -45,6 +47,7 @@ impl ModelCode {
         match self {
             Self::NotReadYet => "step.not-read-yet",
             Self::BadGeometry => "step.bad-geometry",
+            Self::NotFinite => "step.not-finite",
             Self::BadTopology => "step.bad-topology",
             Self::Cycle => "step.cycle",
             Self::Dangling => "step.dangling-reference",
@@ -65,7 +68,9 @@ impl ModelCode {
     pub fn severity(self) -> Severity {
         match self {
             Self::NotReadYet => Severity::Note,
-            Self::BadGeometry | Self::BadTopology | Self::Cycle | Self::Dangling => Severity::Error,
+            Self::BadGeometry | Self::NotFinite | Self::BadTopology | Self::Cycle | Self::Dangling => {
+                Severity::Error
+            }
             Self::BadPcurve
             | Self::MissingUnit
             | Self::UnknownUnit

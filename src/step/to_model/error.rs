@@ -3,7 +3,7 @@
 use super::code::ModelCode;
 use crate::geometry::nurbs::{KnotVectorError, NetError};
 use crate::step::InstanceName;
-use crate::step::view::AttributeError;
+use crate::step::view::{AttributeError, OUT_OF_RANGE};
 
 /// Why geometry or topology cannot be read from a record.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -33,8 +33,11 @@ pub(super) enum ReadError {
     #[error("semi_angle is {radians} rad, expected an angle between 0 and a right angle")]
     SemiAngle { radians: f64 },
     /// Coordinates or direction ratios are too few, not numbers, or all zero.
-    #[error("{0} has no two or three finite coordinates")]
+    #[error("{0} has no two or three coordinates")]
     Coordinates(InstanceName),
+    /// A coordinate or direction ratio that no number of 64 bits holds.
+    #[error("{0} has the coordinate {1}, which is beyond every finite number; write it as a finite real")]
+    NotFinite(InstanceName, String),
     /// A direction of length zero.
     #[error("{0} is a direction of length zero")]
     ZeroDirection(InstanceName),
@@ -68,6 +71,7 @@ impl ReadError {
             Self::Basis { source, .. } => source.geometry_code(),
             Self::Dangling(_) => ModelCode::Dangling,
             Self::Cycle(_) => ModelCode::Cycle,
+            _ if self.is_not_finite() => ModelCode::NotFinite,
             _ => ModelCode::BadGeometry,
         }
     }
@@ -77,7 +81,17 @@ impl ReadError {
         match self {
             Self::Dangling(_) => ModelCode::Dangling,
             Self::Cycle(_) => ModelCode::Cycle,
+            _ if self.is_not_finite() => ModelCode::NotFinite,
             _ => ModelCode::BadTopology,
+        }
+    }
+
+    /// Whether a number of the file is beyond every finite one.
+    fn is_not_finite(&self) -> bool {
+        match self {
+            Self::NotFinite(..) => true,
+            Self::Attribute(error) => error.found == OUT_OF_RANGE,
+            _ => false,
         }
     }
 }
