@@ -90,7 +90,7 @@ pub enum OpenError {
     #[error("neither the content nor the extension is that of a known format")]
     Unknown,
     /// The file is empty.
-    #[error("the file is empty")]
+    #[error("the file is empty; export the part again")]
     Empty,
     /// The file is larger than can be addressed.
     #[error(transparent)]

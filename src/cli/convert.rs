@@ -10,7 +10,7 @@ use crate::diagnostic::Severity;
 use crate::document::Format;
 use crate::job::failure::PartError;
 use crate::job::file::SideFormat;
-use crate::job::judge::{mesh_bytes, whole_mesh};
+use crate::job::judge::{chord, mesh_bytes, whole_mesh};
 use crate::job::output::Staged;
 use crate::job::part::Read;
 use crate::job::plan::normal;
@@ -110,8 +110,7 @@ fn one(
         }
         Some(format) => {
             let model = read.model();
-            let unit = model.contexts.first().map(|context| &context.length);
-            let chord = tolerance.zip(unit).map(|(length, unit)| length.in_unit(unit));
+            let chord = tolerance.map(|length| chord(&model, length, "--tolerance")).transpose()?;
             Some(mesh_bytes(&whole_mesh(&model, chord)?, format))
         }
     };

@@ -27,6 +27,9 @@ impl Read {
     /// # Errors
     /// [`PartError::Input`], [`PartError::Open`].
     pub fn file(path: &Path) -> Result<Self, PartError> {
+        if path.is_dir() {
+            return Err(PartError::Folder(path.to_owned()));
+        }
         let bytes = std::fs::read(path)
             .map_err(|source| PartError::Input(FileError { path: path.to_owned(), source }))?;
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();

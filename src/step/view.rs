@@ -242,7 +242,7 @@ pub fn list<'a>(
 }
 
 fn wrong(field: Option<Parameter<'_>>, attribute: &'static str, expected: &'static str) -> AttributeError {
-    let found = match field {
+    let found = match field.map(|field| field.untyped()) {
         None => "missing",
         Some(Parameter::Omitted) => "`$`",
         Some(Parameter::Derived) => "`*`",

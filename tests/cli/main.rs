@@ -2,6 +2,7 @@
 
 mod accepted;
 mod jobs;
+mod locality;
 mod parts;
 mod patho;
 #[path = "../support/mod.rs"]

@@ -30,6 +30,12 @@ pub enum ModelCode {
     LooseBody,
     /// A shell that several bodies hold; the first has it.
     SharedShell,
+    /// A face that its shell lists more than once; it counts once.
+    RepeatedFace,
+    /// A context's uncertainty that is no positive length.
+    BadUncertainty,
+    /// A record of the header that is missing or has not the attributes that it must have.
+    BadHeader,
     /// A coordinate without a point, against ISO 10303-21; said once for a file.
     IntegerForReal,
     /// A coordinate with a lower-case exponent, against ISO 10303-21; said once for a file.
@@ -56,6 +62,9 @@ impl ModelCode {
             Self::UnknownUnit => "step.unknown-unit",
             Self::LooseBody => "step.loose-body",
             Self::SharedShell => "step.shared-shell",
+            Self::RepeatedFace => "step.repeated-face",
+            Self::BadUncertainty => "step.bad-uncertainty",
+            Self::BadHeader => "step.bad-header",
             Self::IntegerForReal => "step.integer-for-real",
             Self::LowerCaseExponent => "step.lower-case-exponent",
             Self::RawString => "step.raw-string",
@@ -76,6 +85,9 @@ impl ModelCode {
             | Self::UnknownUnit
             | Self::LooseBody
             | Self::SharedShell
+            | Self::RepeatedFace
+            | Self::BadUncertainty
+            | Self::BadHeader
             | Self::IntegerForReal
             | Self::LowerCaseExponent
             | Self::RawString

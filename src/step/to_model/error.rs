@@ -26,6 +26,9 @@ pub(super) enum ReadError {
     /// An attribute that is not what the schema says.
     #[error(transparent)]
     Attribute(#[from] AttributeError),
+    /// A word of an SI unit that is none, or not the one of the quantity.
+    #[error("the word `{found}` of the unit is not known here, expected {expected}")]
+    UnitName { found: String, expected: String },
     /// A radius, semi-axis or the like.
     #[error("{attribute} is {value}, expected a positive number")]
     NotPositive { attribute: &'static str, value: f64 },
@@ -41,6 +44,9 @@ pub(super) enum ReadError {
     /// A direction of length zero.
     #[error("{0} is a direction of length zero")]
     ZeroDirection(InstanceName),
+    /// A multiplicity that is no positive integer.
+    #[error("multiplicity {index} (from 0){direction} is {}, expected an integer of at least 1", whole(.value))]
+    Multiplicity { direction: &'static str, index: usize, value: Option<i64> },
     /// Count of knots.
     #[error(
         "{expected} knots{direction} expected for degree {degree} and {points} control points, found {found}"
@@ -61,6 +67,10 @@ pub(super) enum ReadError {
     /// A loop without edges, a shell without faces.
     #[error("{attribute} is empty")]
     Empty { attribute: &'static str },
+}
+
+fn whole(value: &Option<i64>) -> String {
+    value.map_or_else(|| "no integer".to_owned(), |value| value.to_string())
 }
 
 impl ReadError {
