@@ -25,7 +25,7 @@ pub use code::Code;
 pub use entity::Entity;
 pub use exchange_structure::{ExchangeStructure, Instance, InstanceName, SimpleRecord};
 pub use lower::{LowerError, lower};
-pub use parameter::{Parameter, Parameters, Token};
+pub use parameter::{Parameter, ParameterKind, Parameters};
 pub use reverse_index::ReverseIndex;
 pub use section::{Section, SectionKind};
 pub use to_model::to_model;
