@@ -6,7 +6,7 @@
 //!
 //! INVARIANT: a value that is given is the nearest one, ties to even: the same bits as the standard library's.
 
-use super::syntax::{DIGIT_ZEROS, leading_digits};
+use super::syntax::{DIGIT_ZEROS, leading_digits, word_at};
 
 /// Decimal digits that 64 bits always hold.
 const MAX_DIGITS: usize = 19;
@@ -60,8 +60,8 @@ fn leading_zeros(text: &[u8]) -> usize {
 #[inline]
 fn digits_at(bytes: &[u8], mut at: usize, number: &mut u64) -> usize {
     const SCALE: [u64; 9] = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000];
-    while let Some(chunk) = bytes.get(at..).and_then(|rest| rest.first_chunk::<8>()) {
-        let word = u64::from_le_bytes(*chunk);
+    loop {
+        let word = word_at(bytes, at);
         let found = leading_digits(word);
         if found == 0 {
             return at;
@@ -74,11 +74,6 @@ fn digits_at(bytes: &[u8], mut at: usize, number: &mut u64) -> usize {
             return at;
         }
     }
-    while let Some(digit @ b'0'..=b'9') = bytes.get(at) {
-        *number = number.wrapping_mul(10).wrapping_add(u64::from(digit - b'0'));
-        at += 1;
-    }
-    at
 }
 
 /// The number of eight digits 0 to 9, the first in the lowest byte: neighbours are joined

@@ -27,7 +27,7 @@ pub use entity::Entity;
 pub use exchange_structure::{ExchangeStructure, Instance, InstanceName, SimpleRecord};
 pub use lower::{LowerError, lower};
 pub use overflow::may_overflow;
-pub use parameter::{Parameter, Parameters, Token};
+pub use parameter::{Parameter, ParameterKind, Parameters};
 pub use reverse_index::ReverseIndex;
 pub use section::{Section, SectionKind};
 pub use to_model::to_model;

@@ -7,7 +7,7 @@ use crate::step::decimal;
 use crate::step::entity::Entity;
 use crate::step::syntax::{string_end, trivia_end};
 use crate::step::view::{real, reference, simple_parts};
-use crate::step::{Instance, InstanceName, Parameter, Parameters};
+use crate::step::{Instance, InstanceName, ParameterKind, Parameters};
 
 /// A `CARTESIAN_POINT` in space; a missing third coordinate is an error.
 pub(super) fn point3(scope: Scope<'_>, name: InstanceName) -> Result<Point3<f64>, ReadError> {
@@ -136,20 +136,20 @@ fn numbers<const N: usize>(
     let mut numbers = [0.0; N];
     for number in &mut numbers {
         let parameter = list.next().ok_or(ReadError::Coordinates(name))?;
-        match &parameter {
-            Parameter::Real(token) if !token.text().contains(&b'e') => {}
-            Parameter::Real(_) if scope.habits.exponent.get().is_none() => {
+        match parameter.kind() {
+            ParameterKind::Real if !parameter.text().contains(&b'e') => {}
+            ParameterKind::Real if scope.habits.exponent.get().is_none() => {
                 scope.habits.exponent.set(Some(name))
             }
-            Parameter::Integer(_) if scope.habits.integer.get().is_none() => {
+            ParameterKind::Integer if scope.habits.integer.get().is_none() => {
                 scope.habits.integer.set(Some(name))
             }
             _ => {}
         }
-        *number = match (parameter.as_f64(), &parameter) {
+        *number = match (parameter.as_f64(), parameter.kind()) {
             (Some(value), _) if value.is_finite() => value,
-            (_, Parameter::Real(token)) => {
-                let text = String::from_utf8_lossy(token.text()).into_owned();
+            (_, ParameterKind::Real) => {
+                let text = String::from_utf8_lossy(parameter.text()).into_owned();
                 return Err(ReadError::NotFinite(name, text));
             }
             _ => return Err(ReadError::Coordinates(name)),
