@@ -11,6 +11,7 @@ pub mod code;
 mod curve;
 mod curve2d;
 mod error;
+mod header;
 mod placement;
 mod presentation;
 mod product;
@@ -51,8 +52,9 @@ pub fn to_model(file: &ExchangeStructure, sink: &mut dyn Sink) -> Model {
     presentation::apply(&mut builder, &roots, &mut bodies.attributes);
     let Builder { brep, origins, faces, sink, .. } = builder;
     habits.report(file, sink);
+    header::check(file, sink);
     Model {
-        schema: schema(file),
+        schema: file.schemas().map(|name| name.into_owned()).collect(),
         brep,
         contexts: bodies.contexts.all,
         body_context: bodies.context,
@@ -63,11 +65,4 @@ pub fn to_model(file: &ExchangeStructure, sink: &mut dyn Sink) -> Model {
         occurrences,
         origins,
     }
-}
-
-/// Schema names of the header, decoded.
-fn schema(file: &ExchangeStructure) -> Vec<String> {
-    let record = file.header().find(|record| record.keyword().eq_ignore_ascii_case(b"FILE_SCHEMA"));
-    let list = record.and_then(|record| record.parameters().next()).and_then(|names| names.as_list());
-    list.into_iter().flatten().filter_map(|name| name.as_str()).map(|name| name.into_owned()).collect()
 }
