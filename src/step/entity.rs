@@ -175,6 +175,7 @@ entities! {
     SurfaceCurve = "SURFACE_CURVE",
     SurfaceOfLinearExtrusion = "SURFACE_OF_LINEAR_EXTRUSION",
     SurfaceOfRevolution = "SURFACE_OF_REVOLUTION",
+    SurfacePatch = "SURFACE_PATCH",
     SurfaceReplica = "SURFACE_REPLICA",
     SurfaceSideStyle = "SURFACE_SIDE_STYLE",
     SurfaceStyleFillArea = "SURFACE_STYLE_FILL_AREA",

@@ -4,9 +4,11 @@
 //! radians. What cannot be read is carried with the reason, and reported; what stands in the file and
 //! is not asked for is not looked at.
 //!
-//! INVARIANT: no function recurses over references; chains are followed in loops with a cap.
+//! INVARIANT: chains of references are followed in loops with a cap, or, where geometry is made of geometry, by
+//! recursion with a cap on depth and on the count of parts.
 
 mod body;
+mod bounded_curve;
 pub mod code;
 mod curve;
 mod curve2d;

@@ -1,5 +1,7 @@
 //! Each entity form from a snippet; expected values are the snippet's own numbers or closed forms.
 
+mod forms;
+
 use std::f64::consts::PI;
 
 use super::*;
@@ -249,7 +251,10 @@ fn trimmed_curves_of_the_same_sense_stand_for_their_basis() {
         )
     };
     assert!(matches!(curve(&trimmed(".T.")).0.read(), Some(Curve::Circle { .. })));
-    assert_eq!(refused(&curve(&trimmed(".F.")).0), "not read yet");
+    // Backwards from 0° to 90° is three quarters of the turn.
+    let backward = curve(&trimmed(".F.")).0;
+    let (start, end) = backward.read().expect("kept as it is").domain();
+    assert!((end - start - 1.5 * PI).abs() < 1e-12);
 }
 
 #[test]
@@ -305,7 +310,10 @@ fn bad_data_are_carried_with_the_exact_reason() {
         refused(&surface("#100=SPHERICAL_SURFACE('',#11,$);").0),
         "radius is `$`, expected a finite number"
     );
-    assert_eq!(refused(&surface("#100=OFFSET_SURFACE('',#11,1.,.F.);").0), "not read yet");
+    assert_eq!(
+        refused(&surface("#100=OFFSET_SURFACE('',#11,1.,.F.);").0),
+        "basis_surface #11 AXIS2_PLACEMENT_3D: #11 is AXIS2_PLACEMENT_3D, expected SURFACE"
+    );
     assert_eq!(refused(&surface("#100=!MINE(1);").0), "not read yet");
     let (found, sink) = surface("");
     assert_eq!(refused(&found), "#100 is not in the file");
