@@ -120,3 +120,24 @@ fn odd_variants_end_as_their_manifest_says() {
         }
     }
 }
+
+#[test]
+fn annotations_of_a_toleranced_part_are_those_that_its_records_count() {
+    use resurf::model::{AnnotationKind, Element};
+    let Some(corpus) = corpus() else { return };
+    let (model, _) = read(&corpus.join("step/nist_ftc_06.step"));
+    let of = |kind| model.annotations.iter().filter(move |annotation| annotation.kind == kind);
+    // By keyword in the file: 14 sizes, 10 locations; 12 profiles, 11 positions, 3 flatness, 2 perpendicularity;
+    // 10 datums, 6 targets.
+    let counts = [AnnotationKind::Dimension, AnnotationKind::Tolerance, AnnotationKind::Datum];
+    assert_eq!(counts.map(|kind| of(kind).count()), [24, 28, 16]);
+    let on_faces = |kind| of(kind).filter(|a| a.on.iter().any(|e| matches!(e, Element::Face(_)))).count();
+    // The others are tied to supplemental curves and points; counted by a search of the records of its own.
+    assert_eq!(counts.map(on_faces), [20, 27, 6]);
+    // 67 callouts; those of the dimensions and tolerances above are tied to what they speak of.
+    let callouts = of(AnnotationKind::Presentation).filter(|a| a.entity == "DRAUGHTING_CALLOUT");
+    let linked = callouts.clone().filter(|a| !a.on.is_empty()).count();
+    assert!(callouts.count() == 67 && linked >= 47, "{linked}");
+    // 2 geometric, 1 of attributes, 133 of annotations.
+    assert_eq!(of(AnnotationKind::ValidationProperty).count(), 136);
+}

@@ -12,7 +12,7 @@ use crate::math::{Point3, Vector3};
 use crate::model::{Inventory, Origin};
 use crate::source::Source;
 
-fn read(data: &str) -> (Model, Vec<Diagnostic>) {
+pub(super) fn read(data: &str) -> (Model, Vec<Diagnostic>) {
     let text = format!(
         "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n\
          FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;\nDATA;\n{data}\nENDSEC;\nEND-ISO-10303-21;\n"
@@ -24,7 +24,7 @@ fn read(data: &str) -> (Model, Vec<Diagnostic>) {
 }
 
 /// Context `#900`: millimetres, degrees, uncertainty 0.001.
-const DEGREES: &str = "
+pub(super) const DEGREES: &str = "
 #900=(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((#905))
 GLOBAL_UNIT_ASSIGNED_CONTEXT((#901,#902))REPRESENTATION_CONTEXT('',''));
 #901=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));
@@ -35,7 +35,7 @@ GLOBAL_UNIT_ASSIGNED_CONTEXT((#901,#902))REPRESENTATION_CONTEXT('',''));
 #906=DIMENSIONAL_EXPONENTS(0.,0.,0.,0.,0.,0.,0.);";
 
 /// A surface model with one face on `#100`, bounded by one edge on `#200` from (1, 0, 0) back to itself.
-const FACE: &str = "
+pub(super) const FACE: &str = "
 #1=SHAPE_REPRESENTATION('',(#2),#900);
 #2=SHELL_BASED_SURFACE_MODEL('skin',(#3));
 #3=OPEN_SHELL('',(#4));
@@ -51,8 +51,8 @@ const FACE: &str = "
 #13=DIRECTION('',(0.,0.,2.));
 #14=DIRECTION('',(1.,0.,0.));";
 
-const CIRCLE: &str = "#200=CIRCLE('',#11,1.);";
-const PLANE: &str = "#100=PLANE('',#11);";
+pub(super) const CIRCLE: &str = "#200=CIRCLE('',#11,1.);";
+pub(super) const PLANE: &str = "#100=PLANE('',#11);";
 
 /// The face's surface for a record `#100`, and every diagnostic.
 fn surface(records: &str) -> (Carried<Surface>, Vec<Diagnostic>) {
@@ -419,7 +419,7 @@ fn colours_layers_and_products_reach_the_face() {
     let face = model.brep.faces.ids().next().expect("one face");
     let rgb = |colour: Option<crate::model::Colour>| colour.map(|c| [c.red, c.green, c.blue]);
     assert_eq!(rgb(model.colour_of(face)), Some([1.0, 0.0, 0.0]));
-    assert_eq!(rgb(model.bodies[model.body_of(face)].own.colour), Some([0.25, 0.5, 1.0]));
+    assert_eq!(rgb(model.bodies[model.body_of(face)].own.appearance.colour), Some([0.25, 0.5, 1.0]));
     assert_eq!(model.layers_of(face).collect::<Vec<_>>(), ["12", "12"]);
     assert_eq!(model.product_of(face).map(|p| p.name.as_str()), Some("Tür"));
 }
