@@ -231,7 +231,7 @@ pub fn list<'a>(
 }
 
 fn wrong(field: Option<Parameter<'_>>, attribute: &'static str, expected: &'static str) -> AttributeError {
-    let found = match field.map(|parameter| parameter.untyped().kind()) {
+    let found = match field.map(|field| field.untyped().kind()) {
         None => "missing",
         Some(ParameterKind::Omitted) => "`$`",
         Some(ParameterKind::Derived) => "`*`",

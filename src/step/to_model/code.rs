@@ -44,6 +44,8 @@ pub enum ModelCode {
     RawString,
     /// A product, an assembly use, a style or a layer that cannot be followed.
     BadReference,
+    /// An assembly with more instances than are walked.
+    TooManyInstances,
 }
 
 impl ModelCode {
@@ -69,6 +71,7 @@ impl ModelCode {
             Self::LowerCaseExponent => "step.lower-case-exponent",
             Self::RawString => "step.raw-string",
             Self::BadReference => "step.bad-reference",
+            Self::TooManyInstances => "step.too-many-instances",
         }
     }
 
@@ -91,7 +94,8 @@ impl ModelCode {
             | Self::IntegerForReal
             | Self::LowerCaseExponent
             | Self::RawString
-            | Self::BadReference => Severity::Warning,
+            | Self::BadReference
+            | Self::TooManyInstances => Severity::Warning,
         }
     }
 

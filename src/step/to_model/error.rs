@@ -64,6 +64,12 @@ pub(super) enum ReadError {
     /// A net that does not fit its knots, or has bad numbers.
     #[error(transparent)]
     Net(#[from] NetError),
+    /// A piece of a curve or surface without extent.
+    #[error("nothing lies between the trims {from} and {to}")]
+    NoPiece { from: f64, to: f64 },
+    /// A part of a composite without ends.
+    #[error("{attribute} has a member without ends, or is no full grid")]
+    Unbounded { attribute: &'static str },
     /// A loop without edges, a shell without faces.
     #[error("{attribute} is empty")]
     Empty { attribute: &'static str },

@@ -138,6 +138,15 @@ fn one_uncertainty(
     Err(ReadError::NotPositive { attribute: "value_component", value })
 }
 
+/// Name of a unit of length or angle; empty for any other.
+pub(super) fn name_of(scope: Scope<'_>, unit: InstanceName) -> String {
+    match unit_of(scope, unit) {
+        Ok(Unit::Length(unit)) => unit.name,
+        Ok(Unit::Angle(unit)) => unit.name,
+        Ok(Unit::Other) | Err(_) => String::new(),
+    }
+}
+
 fn unit_of(scope: Scope<'_>, name: InstanceName) -> Result<Unit, ReadError> {
     let view = scope.view_of(name, Entity::NamedUnit)?;
     let is_length = view.is(Entity::LengthUnit);
