@@ -10,7 +10,7 @@ use crate::diagnostic::Severity;
 use crate::document::Format;
 use crate::job::failure::PartError;
 use crate::job::file::SideFormat;
-use crate::job::judge::{mesh_bytes, whole_mesh};
+use crate::job::judge::side_bytes;
 use crate::job::output::Staged;
 use crate::job::part::Read;
 use crate::job::plan::normal;
@@ -61,6 +61,8 @@ fn places(arguments: &ConvertArguments) -> Result<Vec<(PathBuf, Target)>, String
                 Target::Step => name,
                 Target::Stl => name.with_extension("stl"),
                 Target::Off => name.with_extension("off"),
+                Target::ThreeMf => name.with_extension("3mf"),
+                Target::Glb => name.with_extension("glb"),
             })
         } else {
             output.clone()
@@ -82,9 +84,11 @@ fn by_extension(output: &Path) -> Result<Target, String> {
     match extension.as_str() {
         "stl" => Ok(Target::Stl),
         "off" => Ok(Target::Off),
+        "3mf" => Ok(Target::ThreeMf),
+        "glb" => Ok(Target::Glb),
         _ if Format::of_extension(&extension) == Some(Format::Step) => Ok(Target::Step),
         _ => Err(format!(
-            "the extension of {} is not one that is written: step, stp, stl, off; `--to` decides as well",
+            "the extension of {} is not one that is written: step, stp, stl, off, 3mf, glb; `--to` decides as well",
             output.display()
         )),
     }
@@ -102,6 +106,8 @@ fn one(
         Target::Step => None,
         Target::Stl => Some(SideFormat::Stl),
         Target::Off => Some(SideFormat::Off),
+        Target::ThreeMf => Some(SideFormat::ThreeMf),
+        Target::Glb => Some(SideFormat::Glb),
     };
     let bytes = match format {
         None => None,
@@ -109,7 +115,7 @@ fn one(
             let model = read.model();
             let unit = model.contexts.first().map(|context| &context.length);
             let chord = tolerance.zip(unit).map(|(length, unit)| length.in_unit(unit));
-            Some(mesh_bytes(&whole_mesh(&model, chord)?, format))
+            Some(side_bytes(&model, chord, format)?)
         }
     };
     show::diagnostics(printer, input, &read);

@@ -196,11 +196,12 @@ fn side_files(
     let first = model.brep.faces.ids().next();
     let unit = |face: FaceId| &model.context_of(face).length;
     let chord = first.and_then(|face| job.tolerance.length.map(|length| length.0.in_unit(unit(face))));
-    let mesh = judge::whole_mesh(model, chord)?;
     let mut staged = Vec::new();
     for &format in &job.also {
         let path = part.output.with_extension(format.extension());
-        staged.push(Staged::write(&path, &judge::mesh_bytes(&mesh, format)).map_err(PartError::Output)?);
+        staged.push(
+            Staged::write(&path, &judge::side_bytes(model, chord, format)?).map_err(PartError::Output)?,
+        );
         report.side_files.push(path.to_string_lossy().into_owned());
     }
     Ok(staged)
