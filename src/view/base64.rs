@@ -1,4 +1,4 @@
-//! Base 64 of ISO/IEC text safety: RFC 4648, clause 4.
+//! Numbers as text that a page can hold: base 64 of RFC 4648, clause 4.
 
 const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 

@@ -539,9 +539,14 @@ function tree() {
     placed.box = line(`${body.id} ${body.name}`, level);
     placed.box.onchange = () => { showBody(placed, placed.box.checked); redraw(); };
   };
-  const ofNode = scene.nodes.map(() => []);
-  scene.placed.forEach((placed) => { if (placed.node !== null) ofNode[placed.node].push(placed); });
+  const ofNode = scene.nodes.map(() => []), full = scene.nodes.map(() => false);
+  scene.placed.forEach((placed) => {
+    if (placed.node === null) return;
+    ofNode[placed.node].push(placed);
+    for (let at = placed.node; at !== null && !full[at]; at = scene.nodes[at].parent) full[at] = true;
+  });
   scene.nodes.forEach((node, at) => {
+    if (!full[at]) return; // Nothing of it is shown: a material, or a part in another file.
     depth[at] = node.parent === null ? 0 : depth[node.parent] + 1;
     if (node.parent !== null) below[node.parent].push(at);
     boxes[at] = line(node.name || node.id, depth[at]);
