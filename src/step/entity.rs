@@ -235,6 +235,7 @@ entities! {
     SurfaceCurve = "SURFACE_CURVE",
     SurfaceOfLinearExtrusion = "SURFACE_OF_LINEAR_EXTRUSION",
     SurfaceOfRevolution = "SURFACE_OF_REVOLUTION",
+    SurfacePatch = "SURFACE_PATCH",
     SurfaceProfileTolerance = "SURFACE_PROFILE_TOLERANCE",
     SurfaceReplica = "SURFACE_REPLICA",
     SurfaceSideStyle = "SURFACE_SIDE_STYLE",

@@ -4,15 +4,18 @@
 //! radians. What cannot be read is carried with the reason, and reported; what stands in the file and
 //! is not asked for is not looked at.
 //!
-//! INVARIANT: no function recurses over references; chains are followed in loops with a cap.
+//! INVARIANT: chains of references are followed in loops with a cap, or, where geometry is made of geometry, by
+//! recursion with a cap on depth and on the count of parts.
 
 mod annotation;
 mod assembly;
 mod body;
+mod bounded_curve;
 pub mod code;
 mod curve;
 mod curve2d;
 mod error;
+mod header;
 mod placement;
 mod presentation;
 mod product;
@@ -70,8 +73,9 @@ pub fn to_model(file: &ExchangeStructure, sink: &mut dyn Sink) -> Model {
     let annotations = annotation::annotations(&builder, &roots, &products);
     let Builder { brep, origins, faces, sink, .. } = builder;
     habits.report(file, sink);
+    header::check(file, sink);
     let model = Model {
-        schema: schema(file),
+        schema: file.schemas().map(|name| name.into_owned()).collect(),
         brep,
         contexts: contexts.all,
         body_context: context,
@@ -85,11 +89,4 @@ pub fn to_model(file: &ExchangeStructure, sink: &mut dyn Sink) -> Model {
     };
     assembly::report_size(&model, scope, sink);
     model
-}
-
-/// Schema names of the header, decoded.
-fn schema(file: &ExchangeStructure) -> Vec<String> {
-    let record = file.header().find(|record| record.keyword().eq_ignore_ascii_case(b"FILE_SCHEMA"));
-    let list = record.and_then(|record| record.parameters().next()).and_then(|names| names.as_list());
-    list.into_iter().flatten().filter_map(|name| name.as_str()).map(|name| name.into_owned()).collect()
 }

@@ -11,7 +11,7 @@ use super::scope::Scope;
 use crate::diagnostic::Sink;
 use crate::model::{Appearance, Origin, Product};
 use crate::step::entity::Entity;
-use crate::step::{InstanceName, Parameter, string};
+use crate::step::{InstanceName, ParameterKind, string};
 
 /// Representations that are looked at to find the product of one: real files need two or three.
 const MAX_RELATED_REPRESENTATIONS: usize = 64;
@@ -175,8 +175,9 @@ fn product(scope: Scope<'_>, definition: InstanceName, sink: &mut dyn Sink) -> R
     let formation = scope.view_of(view.reference("formation")?, Entity::ProductDefinitionFormation)?;
     let product = scope.view_of(formation.reference("of_product")?, Entity::Product)?;
     for attribute in ["id", "name"] {
-        if let Some(Parameter::String(token)) = product.get(attribute)
-            && string::decode(token.text()).lossy
+        if let Some(text) = product.get(attribute)
+            && text.kind() == ParameterKind::String
+            && string::decode(text.text()).lossy
         {
             let message = format!("PRODUCT: {attribute} has bytes that are not UTF-8, shown as ISO 8859-1");
             sink.report(ModelCode::RawString.at(scope.file, product.name(), message));
