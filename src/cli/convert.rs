@@ -10,7 +10,7 @@ use crate::diagnostic::Severity;
 use crate::document::Format;
 use crate::job::failure::PartError;
 use crate::job::file::SideFormat;
-use crate::job::judge::{chord, mesh_bytes, whole_mesh};
+use crate::job::judge::{chord, side_bytes};
 use crate::job::output::Staged;
 use crate::job::part::Read;
 use crate::job::plan::normal;
@@ -63,6 +63,8 @@ fn places(arguments: &ConvertArguments) -> Result<Vec<(PathBuf, Target)>, String
                 Target::Step => name,
                 Target::Stl => name.with_extension("stl"),
                 Target::Off => name.with_extension("off"),
+                Target::ThreeMf => name.with_extension("3mf"),
+                Target::Glb => name.with_extension("glb"),
             })
         } else {
             output.clone()
@@ -89,9 +91,11 @@ fn by_extension(output: &Path) -> Result<Target, String> {
     match extension.as_str() {
         "stl" => Ok(Target::Stl),
         "off" => Ok(Target::Off),
+        "3mf" => Ok(Target::ThreeMf),
+        "glb" => Ok(Target::Glb),
         _ if Format::of_extension(&extension) == Some(Format::Step) => Ok(Target::Step),
         _ => Err(format!(
-            "the extension of {} is not one that is written: step, stp, stl, off; `--to` decides as well",
+            "the extension of {} is not one that is written: step, stp, stl, off, 3mf, glb; `--to` decides as well",
             output.display()
         )),
     }
@@ -108,6 +112,8 @@ fn one(
         Target::Step => copy(input, output, printer),
         Target::Stl => mesh(input, output, SideFormat::Stl, tolerance, printer),
         Target::Off => mesh(input, output, SideFormat::Off, tolerance, printer),
+        Target::ThreeMf => mesh(input, output, SideFormat::ThreeMf, tolerance, printer),
+        Target::Glb => mesh(input, output, SideFormat::Glb, tolerance, printer),
     }
 }
 
@@ -137,7 +143,7 @@ fn mesh(
     let mut read = Read::file(input)?;
     let model = read.model();
     let chord = tolerance.map(|length| chord(&model, length, "--tolerance")).transpose()?;
-    let bytes = mesh_bytes(&whole_mesh(&model, chord)?, format);
+    let bytes = side_bytes(&model, chord, format)?;
     show::diagnostics(printer, input, &read);
     // The mesh of what could be read would be the mesh of half a part.
     read.refuse_errors()?;
