@@ -170,7 +170,8 @@ pub fn scene(model: &Model, chord: Option<f64>) -> Result<Scene, PartError> {
         let own = Some(attributes.own.name.clone()).filter(|name| !name.is_empty());
         let shells = &model.brep.bodies[body].shells;
         let faces = shells.iter().flat_map(|&shell| &model.brep.shells[shell].faces);
-        let faces = faces.filter_map(|&face| Some((face, rgb(model.faces[face].appearance.colour?)))).collect();
+        let faces =
+            faces.filter_map(|&face| Some((face, rgb(model.faces[face].appearance.colour?)))).collect();
         let mut mesh = mesh_of(model, &[body], chord)?;
         let unit = model.contexts[model.body_context[body]].length.metres / metres;
         mesh.vertices.iter_mut().for_each(|point| *point *= unit);

@@ -40,9 +40,8 @@ const fn refused(name: &'static str, word: &'static str, says: &'static str) -> 
 }
 
 const TABLE: [Expected; 33] = [
-    // Containers are not opened yet: they must say so.
-    refused("gz.stpZ", "read", "gzip files are not read yet"),
-    refused("zip.stpZ", "read", "zip files are not read yet"),
+    silent("gz.stpZ"),
+    silent("zip.stpZ"),
     silent("cr_only.stp"),
     silent("crlf_mixed.stp"),
     silent("one_line.stp"),
@@ -116,6 +115,11 @@ fn holds(row: &Expected, folder: &Path) {
     let said = fixture.run(&["convert", &input, "-o", "same.stp"]);
     assert!(ends(&said, row.convert), "convert {}: {said}", row.name);
     let copy = std::fs::read(fixture.path("same.stp")).ok();
+    if row.name.ends_with("stpZ") {
+        // What is written of a compressed file is plain.
+        assert!(copy.is_some_and(|copy| copy.starts_with(b"ISO-10303-21;")), "{}", row.name);
+        return;
+    }
     assert_eq!(copy.as_deref(), (row.convert == 0).then_some(bytes.as_slice()), "{}", row.name);
     if row.read != 0 {
         let said = fixture.run(&["run", "job.toml"]);
