@@ -14,7 +14,7 @@ use std::hint::black_box;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use resurf::diagnostic::Diagnostics;
 use resurf::source::Source;
-use resurf::step::{ExchangeStructure, Parameter, Parameters};
+use resurf::step::{ExchangeStructure, Parameter, ParameterKind, Parameters};
 
 /// Points, poles and faces in the proportions of a freeform part.
 fn synthetic(megabytes: usize) -> Vec<u8> {
@@ -50,16 +50,16 @@ fn bytes() -> Vec<u8> {
 /// Visits every parameter of every record.
 fn for_each_parameter(structure: &ExchangeStructure, mut visit: impl FnMut(&Parameter<'_>)) {
     let mut open: Vec<Parameters<'_>> = Vec::new();
-    for record in structure.instances().flat_map(|instance| instance.records()) {
-        open.push(record.parameters());
-        while let Some(cursor) = open.last_mut() {
-            let Some(parameter) = cursor.next() else {
-                open.pop();
-                continue;
-            };
-            visit(&parameter);
-            if let Parameter::List(inside) | Parameter::Typed { parameters: inside, .. } = parameter {
-                open.push(inside);
+    for instance in structure.instances() {
+        for record in instance.records() {
+            open.push(record.parameters());
+            while let Some(cursor) = open.last_mut() {
+                let Some(parameter) = cursor.next() else {
+                    open.pop();
+                    continue;
+                };
+                visit(&parameter);
+                open.extend(parameter.members());
             }
         }
     }
@@ -89,9 +89,9 @@ fn parse(criterion: &mut Criterion) {
     group.bench_function("values", |b| {
         b.iter(|| {
             let mut sum = 0.0;
-            for_each_parameter(&structure, |parameter| match parameter {
-                Parameter::Real(_) | Parameter::Integer(_) => sum += parameter.as_f64().unwrap_or_default(),
-                Parameter::String(_) => sum += parameter.as_str().map_or(0.0, |text| text.len() as f64),
+            for_each_parameter(&structure, |parameter| match parameter.kind() {
+                ParameterKind::Real | ParameterKind::Integer => sum += parameter.as_f64().unwrap_or_default(),
+                ParameterKind::String => sum += parameter.as_str().map_or(0.0, |text| text.len() as f64),
                 _ => {}
             });
             sum

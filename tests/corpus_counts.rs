@@ -74,7 +74,7 @@ fn what_the_other_reader_refuses_is_read() {
 const VARIANTS: [(&str, usize, &[&str]); 31] = [
     ("bad_mults.stp", 3, &["step.bad-geometry"]),
     ("bom.stp", 4, &[]),
-    ("cartesian_nan.stp", 4, &["step.bad-geometry"]),
+    ("cartesian_nan.stp", 4, &["step.not-finite"]),
     ("comments_everywhere.stp", 4, &[]),
     ("cr_only.stp", 4, &[]),
     ("crlf_mixed.stp", 4, &[]),
@@ -118,5 +118,40 @@ fn odd_variants_end_as_their_manifest_says() {
         if faces == 4 {
             assert_eq!(found.vertex_extents, whole, "{file}");
         }
+    }
+}
+
+#[test]
+fn annotations_of_a_toleranced_part_are_those_that_its_records_count() {
+    use resurf::model::{AnnotationKind, Element};
+    let Some(corpus) = corpus() else { return };
+    let (model, _) = read(&corpus.join("step/nist_ftc_06.step"));
+    let of = |kind| model.annotations.iter().filter(move |annotation| annotation.kind == kind);
+    // By keyword in the file: 14 sizes, 10 locations; 12 profiles, 11 positions, 3 flatness, 2 perpendicularity;
+    // 10 datums, 6 targets.
+    let counts = [AnnotationKind::Dimension, AnnotationKind::Tolerance, AnnotationKind::Datum];
+    assert_eq!(counts.map(|kind| of(kind).count()), [24, 28, 16]);
+    let on_faces = |kind| of(kind).filter(|a| a.on.iter().any(|e| matches!(e, Element::Face(_)))).count();
+    // The others are tied to supplemental curves and points; counted by a search of the records of its own.
+    assert_eq!(counts.map(on_faces), [20, 27, 6]);
+    // 67 callouts; those of the dimensions and tolerances above are tied to what they speak of.
+    let callouts = of(AnnotationKind::Presentation).filter(|a| a.entity == "DRAUGHTING_CALLOUT");
+    let linked = callouts.clone().filter(|a| !a.on.is_empty()).count();
+    assert!(callouts.count() == 67 && linked >= 47, "{linked}");
+    // 2 geometric, 1 of attributes, 133 of annotations.
+    assert_eq!(of(AnnotationKind::ValidationProperty).count(), 136);
+}
+
+#[test]
+fn compressed_files_are_read_as_what_they_hold() {
+    use resurf::document::Document;
+    let Some(corpus) = corpus() else { return };
+    let bytes = |path: &str| std::fs::read(corpus.join(path)).expect("a file of the corpus");
+    let plain = bytes("step/Amazing Hand Parts - Proximal_Shell.step");
+    for file in ["patho/gz.stpZ", "patho/zip.stpZ"] {
+        let mut sink = Diagnostics::default();
+        let document = Document::open(bytes(file), "stpZ", &mut sink).expect("it is read");
+        assert!(document.source().bytes() == plain, "{file}");
+        assert_eq!(Inventory::of(&document.model(&mut sink)).faces, 26, "{file}");
     }
 }

@@ -20,7 +20,8 @@ pub fn p21_tile(bytes: &[u8]) {
         assert!(structure.instance(instance.name()).is_some(), "{} is not found again", instance.name());
         for record in instance.records() {
             let inside = record.parameters_span();
-            for (parameter, span) in record.parameters().with_spans() {
+            for parameter in record.parameters() {
+                let span = parameter.span();
                 assert!(
                     inside.start <= span.start && span.end <= inside.end,
                     "a parameter outside its record"

@@ -10,7 +10,7 @@ use crate::diagnostic::Severity;
 use crate::document::Format;
 use crate::job::failure::PartError;
 use crate::job::file::SideFormat;
-use crate::job::judge::side_bytes;
+use crate::job::judge::{chord, side_bytes};
 use crate::job::output::Staged;
 use crate::job::part::Read;
 use crate::job::plan::normal;
@@ -58,6 +58,8 @@ fn places(arguments: &ConvertArguments) -> Result<Vec<(PathBuf, Target)>, String
             let name = input.file_name().ok_or_else(|| format!("{} is no file", input.display()))?;
             let name = PathBuf::from(name);
             output.join(match target {
+                // What is written of a compressed file is plain.
+                Target::Step if is_compressed(&name) => name.with_extension("stp"),
                 Target::Step => name,
                 Target::Stl => name.with_extension("stl"),
                 Target::Off => name.with_extension("off"),
@@ -77,6 +79,11 @@ fn places(arguments: &ConvertArguments) -> Result<Vec<(PathBuf, Target)>, String
         places.push((place, target));
     }
     Ok(places)
+}
+
+fn is_compressed(name: &Path) -> bool {
+    let extension = name.extension().and_then(|e| e.to_str()).unwrap_or_default();
+    ["stpz", "gz", "zip"].iter().any(|known| extension.eq_ignore_ascii_case(known))
 }
 
 fn by_extension(output: &Path) -> Result<Target, String> {
@@ -110,16 +117,19 @@ fn one(
         Target::Glb => Some(SideFormat::Glb),
     };
     let bytes = match format {
-        None => None,
+        None => {
+            read.look_for_overflow();
+            None
+        }
         Some(format) => {
             let model = read.model();
-            let unit = model.contexts.first().map(|context| &context.length);
-            let chord = tolerance.zip(unit).map(|(length, unit)| length.in_unit(unit));
+            let chord = tolerance.map(|length| chord(&model, length, "--tolerance")).transpose()?;
             Some(side_bytes(&model, chord, format)?)
         }
     };
     show::diagnostics(printer, input, &read);
-    read.refuse_damage()?;
+    // The mesh of what could be read would be the mesh of half a part; a copy is whole whatever it means.
+    if bytes.is_some() { read.refuse_errors() } else { read.refuse_damage() }?;
     let bytes = bytes.as_deref().unwrap_or_else(|| read.document.source().bytes());
     Staged::write(output, bytes).and_then(Staged::commit).map_err(PartError::Output)
 }

@@ -3,7 +3,7 @@
 //! Everything here gives byte edits for [`Patch`](crate::exchange::Patch) and changes nothing itself.
 
 use super::exchange_structure::ExchangeStructure;
-use super::parameter::Parameter;
+use super::parameter::{Parameter, ParameterKind};
 use super::write::LineEnding;
 use super::{string, syntax};
 use crate::exchange::Edit;
@@ -20,12 +20,12 @@ const PREPROCESSOR_VERSION: usize = 4;
 pub fn stamp(structure: &ExchangeStructure, timestamp: &str, preprocessor: &str) -> Vec<Edit> {
     let Some(file_name) = structure.header_record(b"FILE_NAME") else { return Vec::new() };
     let values = [(TIME_STAMP, timestamp), (PREPROCESSOR_VERSION, preprocessor)];
-    let edit = |(at, (parameter, span)): (usize, (Parameter<'_>, Span))| {
+    let edit = |(at, parameter): (usize, Parameter<'_>)| {
         let (_, value) = values.iter().find(|(place, _)| *place == at)?;
-        let replaceable = matches!(parameter, Parameter::String(_) | Parameter::Omitted);
-        replaceable.then(|| Edit::replace(span, string::encode(value)))
+        let replaceable = matches!(parameter.kind(), ParameterKind::String | ParameterKind::Omitted);
+        replaceable.then(|| Edit::replace(parameter.span(), string::encode(value)))
     };
-    file_name.parameters().with_spans().enumerate().filter_map(edit).collect()
+    file_name.parameters().enumerate().filter_map(edit).collect()
 }
 
 /// Insertions of new records, one for each, before `ENDSEC` of the last data section, each on lines of its own

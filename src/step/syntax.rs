@@ -87,9 +87,13 @@ impl Iterator for Tokens<'_> {
     }
 }
 
-/// A span from offsets into a [`Source`](crate::source::Source), which never exceed 32 bits.
+/// A span from offsets into a [`Source`](crate::source::Source), which is smaller than 4 GiB.
+#[inline]
 pub(crate) fn span(start: usize, end: usize) -> Span {
-    let narrow = |at: usize| u32::try_from(at).expect("a source is smaller than 4 GiB");
+    let narrow = |at: usize| {
+        debug_assert!(u32::try_from(at).is_ok(), "{at} lies behind every source");
+        at as u32
+    };
     Span::new(narrow(start), narrow(end))
 }
 
@@ -162,23 +166,27 @@ fn is_byte_order_mark(bytes: &[u8], at: usize) -> bool {
 }
 
 /// Whether white space, a comment, a print control directive or a byte-order mark may begin with this byte.
-#[inline]
-fn may_begin_trivia(byte: u8) -> bool {
-    matches!(byte, 0..=b' ' | b'/' | b'\\' | 0x7f | 0xef)
-}
+static MAY_BEGIN_TRIVIA: [bool; 256] = {
+    let mut table = [false; 256];
+    let mut byte = 0_usize;
+    while byte < table.len() {
+        table[byte] = matches!(byte as u8, 0..=b' ' | b'/' | b'\\' | 0x7f | 0xef);
+        byte += 1;
+    }
+    table
+};
 
 /// End of white space and comments at `at`. An unclosed comment runs to the end.
 #[inline]
 pub(crate) fn trivia_end(bytes: &[u8], at: usize) -> usize {
-    // Between most tokens stands nothing or one blank.
-    match bytes.get(at..) {
-        Some([first, ..]) if !may_begin_trivia(*first) => at,
-        Some([b' ', second, ..]) if !may_begin_trivia(*second) => at + 1,
-        Some([_, ..]) => trivia_end_slow(bytes, at),
+    // Between most tokens stands nothing.
+    match bytes.get(at) {
+        Some(&byte) if MAY_BEGIN_TRIVIA[usize::from(byte)] => trivia_end_slow(bytes, at),
         _ => at,
     }
 }
 
+#[inline(never)]
 fn trivia_end_slow(bytes: &[u8], mut at: usize) -> usize {
     loop {
         at = whitespace_end(bytes, at);
@@ -224,12 +232,8 @@ fn string_end_slow(bytes: &[u8], at: usize) -> Option<usize> {
 pub(crate) fn number_at(bytes: &[u8], at: usize) -> (Option<u64>, usize) {
     /// Digits that always fit.
     const SAFE_DIGITS: usize = 19;
-    let mut end = at;
-    let mut value = 0_u64;
-    while let Some(digit @ b'0'..=b'9') = bytes.get(end) {
-        value = value.wrapping_mul(10).wrapping_add(u64::from(digit - b'0'));
-        end += 1;
-    }
+    let mut value = 0;
+    let end = digits_at(bytes, at, &mut value);
     match end - at {
         0 => (None, end),
         1..=SAFE_DIGITS => (Some(value), end),
@@ -252,11 +256,24 @@ fn resource_end(bytes: &[u8], at: usize) -> Option<usize> {
     (bytes[end] == b'>').then_some(end + 1)
 }
 
+/// Letters, digits, `_` and `-`.
+static KEYWORD_BYTES: [bool; 256] = {
+    let mut table = [false; 256];
+    let mut byte = 0_usize;
+    while byte < table.len() {
+        table[byte] = (byte as u8).is_ascii_alphanumeric() || matches!(byte as u8, b'_' | b'-');
+        byte += 1;
+    }
+    table
+};
+
+#[inline]
 pub(crate) fn is_keyword_byte(byte: u8) -> bool {
-    byte.is_ascii_alphanumeric() || byte == b'_' || byte == b'-'
+    KEYWORD_BYTES[usize::from(byte)]
 }
 
 /// End of the keyword bytes from `at` on.
+#[inline]
 pub(crate) fn keyword_end(bytes: &[u8], at: usize) -> usize {
     run_end(bytes, at, is_keyword_byte)
 }
@@ -275,17 +292,66 @@ pub(super) fn leading_digits(word: u64) -> usize {
     (others.trailing_zeros() / 8) as usize
 }
 
+/// The eight bytes from `at` on, the first in the lowest place; zeros behind the end.
+#[inline]
+pub(super) fn word_at(bytes: &[u8], at: usize) -> u64 {
+    match bytes.get(at..).and_then(|rest| rest.first_chunk()) {
+        Some(chunk) => u64::from_le_bytes(*chunk),
+        None => last_word(bytes, at),
+    }
+}
+
+/// Like [`word_at`], for less than eight bytes from `at` on.
+#[inline(never)]
+fn last_word(bytes: &[u8], at: usize) -> u64 {
+    match bytes.last_chunk() {
+        // The last eight bytes, less those before `at`.
+        Some(chunk) if at < bytes.len() => u64::from_le_bytes(*chunk) >> (8 * (at + 8 - bytes.len())),
+        _ => bytes.iter().skip(at).rev().fold(0, |word, &byte| word << 8 | u64::from(byte)),
+    }
+}
+
 /// End of the decimal digits from `at` on. Coordinates have many, so eight are looked at together.
 #[inline]
 pub(crate) fn digits_end(bytes: &[u8], mut at: usize) -> usize {
-    while let Some(chunk) = bytes.get(at..).and_then(|rest| rest.first_chunk::<8>()) {
-        let found = leading_digits(u64::from_le_bytes(*chunk));
-        at += found;
+    loop {
+        let found = leading_digits(word_at(bytes, at));
         if found < 8 {
+            return at + found;
+        }
+        // Not by `found`: the next word can be looked at before this one is counted.
+        at += 8;
+    }
+}
+
+/// Appends the digits from `at` on to a number, which wraps around beyond 64 bits; gives their end.
+#[inline]
+pub(super) fn digits_at(bytes: &[u8], mut at: usize, number: &mut u64) -> usize {
+    const SCALE: [u64; 8] = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000];
+    loop {
+        let word = word_at(bytes, at);
+        let found = leading_digits(word);
+        if found == 0 {
             return at;
         }
+        if found < 8 {
+            // What is no digit is shifted out, and zeros come in before the first digit.
+            let digits = (word ^ DIGIT_ZEROS) << (64 - 8 * found);
+            *number = number.wrapping_mul(SCALE[found]).wrapping_add(eight_digits(digits));
+            return at + found;
+        }
+        *number = number.wrapping_mul(100_000_000).wrapping_add(eight_digits(word ^ DIGIT_ZEROS));
+        at += 8;
     }
-    run_end(bytes, at, |byte| byte.is_ascii_digit())
+}
+
+/// The number of eight digits 0 to 9, the first in the lowest byte: neighbours are joined
+/// three times, the left one times its power of ten moved onto the right one.
+#[inline]
+fn eight_digits(digits: u64) -> u64 {
+    let pairs = digits.wrapping_mul(1 + (10 << 8)) >> 8;
+    let fours = (pairs & 0x00ff_00ff_00ff_00ff).wrapping_mul(1 + (100 << 16)) >> 16;
+    (fours & 0x0000_ffff_0000_ffff).wrapping_mul(1 + (10_000 << 32)) >> 32
 }
 
 #[inline]

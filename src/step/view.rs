@@ -7,7 +7,7 @@ use std::borrow::Cow;
 
 use super::entity::Entity;
 use super::schema::{self, Attribute};
-use super::{Instance, InstanceName, Parameter, Parameters};
+use super::{Instance, InstanceName, Parameter, ParameterKind, Parameters};
 use crate::source::Span;
 
 /// An instance whose entity type, or one of whose partial types, the schema table knows.
@@ -30,6 +30,9 @@ pub struct AttributeError {
     /// What the schema asks for.
     pub expected: &'static str,
 }
+
+/// What [`AttributeError::found`] says of a real whose value is not finite.
+pub const OUT_OF_RANGE: &str = "a real out of range";
 
 impl<'a> EntityView<'a> {
     /// The view of an instance, unless its type is unknown.
@@ -84,38 +87,14 @@ impl<'a> EntityView<'a> {
     /// Several attributes in one pass over the text; `None` for one that is not there.
     #[must_use]
     pub fn fields<const N: usize>(&self, names: [&str; N]) -> [Option<Parameter<'a>>; N] {
-        self.fields_with_spans(names).map(|field| field.map(|(parameter, _)| parameter))
-    }
-
-    /// One attribute.
-    #[must_use]
-    pub fn get(&self, attribute: &str) -> Option<Parameter<'a>> {
-        let [found] = self.fields([attribute]);
-        found
-    }
-
-    /// Where the value of an attribute stands in the file.
-    #[must_use]
-    pub fn attribute_span(&self, attribute: &str) -> Option<Span> {
-        self.get_with_span(attribute).map(|(_, span)| span)
-    }
-
-    /// One attribute with the place of its value.
-    #[must_use]
-    pub fn get_with_span(&self, attribute: &str) -> Option<(Parameter<'a>, Span)> {
-        let [found] = self.fields_with_spans([attribute]);
-        found
-    }
-
-    fn fields_with_spans<const N: usize>(&self, names: [&str; N]) -> [Option<(Parameter<'a>, Span)>; N] {
-        let mut found = [const { None }; N];
+        let mut found = [None; N];
         let mut missing = N;
         let mut take = |attributes: &[Attribute], mut parameters: Parameters<'a>| {
             for attribute in attributes {
                 if missing == 0 {
                     return;
                 }
-                let Some(field) = parameters.next_with_span() else { return };
+                let Some(field) = parameters.next() else { return };
                 if let Some(at) = names.iter().position(|name| *name == attribute.name) {
                     missing -= usize::from(found[at].is_none());
                     found[at].get_or_insert(field);
@@ -132,6 +111,19 @@ impl<'a> EntityView<'a> {
             }
         }
         found
+    }
+
+    /// One attribute.
+    #[must_use]
+    pub fn get(&self, attribute: &str) -> Option<Parameter<'a>> {
+        let [found] = self.fields([attribute]);
+        found
+    }
+
+    /// Where the value of an attribute stands in the file.
+    #[must_use]
+    pub fn attribute_span(&self, attribute: &str) -> Option<Span> {
+        self.get(attribute).map(|parameter| parameter.span())
     }
 
     /// A required reference.
@@ -239,17 +231,17 @@ pub fn list<'a>(
 }
 
 fn wrong(field: Option<Parameter<'_>>, attribute: &'static str, expected: &'static str) -> AttributeError {
-    let found = match field {
+    let found = match field.map(|field| field.untyped().kind()) {
         None => "missing",
-        Some(Parameter::Omitted) => "`$`",
-        Some(Parameter::Derived) => "`*`",
-        Some(Parameter::Integer(..)) => "an integer",
-        Some(Parameter::Real(..)) => "a real out of range",
-        Some(Parameter::String(..)) => "a string",
-        Some(Parameter::Enumeration(..)) => "an enumeration value",
-        Some(Parameter::Binary(..)) => "a binary value",
-        Some(Parameter::Reference(..)) => "a reference",
-        Some(Parameter::List(..)) => "a list",
+        Some(ParameterKind::Omitted) => "`$`",
+        Some(ParameterKind::Derived) => "`*`",
+        Some(ParameterKind::Integer) => "an integer",
+        Some(ParameterKind::Real) => OUT_OF_RANGE,
+        Some(ParameterKind::String) => "a string",
+        Some(ParameterKind::Enumeration) => "an enumeration value",
+        Some(ParameterKind::Binary) => "a binary value",
+        Some(ParameterKind::Reference) => "a reference",
+        Some(ParameterKind::List) => "a list",
         Some(_) => "something else",
     };
     AttributeError { attribute, found, expected }

@@ -5,7 +5,7 @@ use resurf::diagnostic::Diagnostics;
 use resurf::source::Source;
 use resurf::step::syntax::Tokens;
 use resurf::step::write::{LineEnding, RecordWriter};
-use resurf::step::{ExchangeStructure, InstanceName, Parameter, literal, string};
+use resurf::step::{ExchangeStructure, InstanceName, literal, string};
 
 /// Fragments that lead a reader astray more often than random bytes do.
 const FRAGMENTS: &[&str] = &[
@@ -83,7 +83,8 @@ proptest! {
         for record in structure.header().chain(structure.instances().flat_map(|instance| instance.records())) {
             let inside = record.parameters_span();
             let mut last = inside.start;
-            for (parameter, span) in record.parameters().with_spans() {
+            for parameter in record.parameters() {
+                let span = parameter.span();
                 prop_assert!(last <= span.start && span.end <= inside.end);
                 last = span.end;
                 let _ = (parameter.as_str(), parameter.as_f64(), parameter.untyped());
@@ -130,7 +131,7 @@ proptest! {
         prop_assert_eq!(&*read, text.as_str());
         let read: Vec<_> = parameters[1].as_list().expect("a list").filter_map(|p| p.as_f64()).map(f64::to_bits).collect();
         prop_assert_eq!(read, values.iter().map(|value| value.to_bits()).collect::<Vec<_>>());
-        prop_assert_eq!(&parameters[2], &Parameter::Reference(InstanceName(name)));
+        prop_assert_eq!(parameters[2].as_reference(), Some(InstanceName(name)));
         prop_assert!(parameters[3].is_omitted());
     }
 }

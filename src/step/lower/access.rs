@@ -21,12 +21,8 @@ impl<'a> Lowering<'a> {
         EntityView::of(self.structure.instance(name)?)
     }
 
-    fn attribute(
-        &self,
-        name: InstanceName,
-        attribute: &'static str,
-    ) -> Result<(Parameter<'a>, Span), LowerError> {
-        let found = self.view(name).and_then(|view| view.get_with_span(attribute));
+    fn attribute(&self, name: InstanceName, attribute: &'static str) -> Result<Parameter<'a>, LowerError> {
+        let found = self.view(name).and_then(|view| view.get(attribute));
         found.ok_or(LowerError::Attribute { name, attribute })
     }
 
@@ -36,7 +32,7 @@ impl<'a> Lowering<'a> {
         name: InstanceName,
         attribute: &'static str,
     ) -> Result<Span, LowerError> {
-        self.attribute(name, attribute).map(|(_, span)| span)
+        self.attribute(name, attribute).map(|parameter| parameter.span())
     }
 
     /// The token and the target of a reference.
@@ -54,8 +50,8 @@ impl<'a> Lowering<'a> {
         name: InstanceName,
         attribute: &'static str,
     ) -> Result<Option<(Span, InstanceName)>, LowerError> {
-        let (parameter, span) = self.attribute(name, attribute)?;
-        Ok(parameter.as_reference().map(|target| (span, target)))
+        let parameter = self.attribute(name, attribute)?;
+        Ok(parameter.as_reference().map(|target| (parameter.span(), target)))
     }
 
     /// The first reference of a list.
@@ -74,18 +70,15 @@ impl<'a> Lowering<'a> {
         name: InstanceName,
         attribute: &'static str,
     ) -> Option<Vec<(Span, InstanceName)>> {
-        let (parameter, _) = self.attribute(name, attribute).ok()?;
+        let parameter = self.attribute(name, attribute).ok()?;
         let mut found = Vec::new();
-        let mut members = parameter.as_list()?;
-        while let Some((member, span)) = members.next_with_span() {
-            match member {
-                Parameter::Reference(target) => found.push((span, target)),
-                Parameter::List(mut row) => {
-                    while let Some((member, span)) = row.next_with_span() {
-                        found.push((span, member.as_reference()?));
-                    }
-                }
-                _ => return None,
+        for member in parameter.as_list()? {
+            if let Some(target) = member.as_reference() {
+                found.push((member.span(), target));
+                continue;
+            }
+            for member in member.as_list()? {
+                found.push((member.span(), member.as_reference()?));
             }
         }
         Some(found)
@@ -93,13 +86,8 @@ impl<'a> Lowering<'a> {
 
     /// The numbers of a list with their tokens.
     fn real_tokens(&self, name: InstanceName, attribute: &'static str) -> Option<Vec<(Span, f64)>> {
-        let (parameter, _) = self.attribute(name, attribute).ok()?;
-        let mut members = parameter.as_list()?;
-        let mut found = Vec::new();
-        while let Some((member, span)) = members.next_with_span() {
-            found.push((span, member.as_f64()?));
-        }
-        Some(found)
+        let parameter = self.attribute(name, attribute).ok()?;
+        parameter.as_list()?.map(|member| Some((member.span(), member.as_f64()?))).collect()
     }
 
     /// The numbers of a list.
@@ -136,16 +124,16 @@ impl<'a> Lowering<'a> {
         attribute: &'static str,
         value: f64,
     ) -> Result<(), LowerError> {
-        let (parameter, span) = self.attribute(name, attribute)?;
+        let parameter = self.attribute(name, attribute)?;
         let old = parameter.as_f64().ok_or(LowerError::Attribute { name, attribute })?;
         if old.to_bits() != value.to_bits() {
-            let text = match parameter {
-                Parameter::Typed { keyword, .. } => {
+            let text = match parameter.keyword() {
+                Some(keyword) => {
                     format!("{}({})", String::from_utf8_lossy(keyword), format_real(value))
                 }
-                _ => format_real(value),
+                None => format_real(value),
             };
-            self.edit(span, text);
+            self.edit(parameter.span(), text);
         }
         Ok(())
     }

@@ -7,7 +7,7 @@ use crate::step::decimal;
 use crate::step::entity::Entity;
 use crate::step::syntax::{string_end, trivia_end};
 use crate::step::view::{real, reference, simple_parts};
-use crate::step::{Instance, InstanceName, Parameter, Parameters};
+use crate::step::{Instance, InstanceName, ParameterKind, Parameters};
 
 /// A `CARTESIAN_POINT` in space; a missing third coordinate is an error.
 pub(super) fn point3(scope: Scope<'_>, name: InstanceName) -> Result<Point3<f64>, ReadError> {
@@ -89,11 +89,11 @@ fn coordinates<const N: usize>(
         // Lower case, a short name, a complex instance, or something else altogether.
         let view = scope.view_of(name, entity)?;
         let attribute = if entity == Entity::Direction { "direction_ratios" } else { "coordinates" };
-        return numbers(scope, name, view.list(attribute)?).ok_or(ReadError::Coordinates(name));
+        return numbers(scope, name, view.list(attribute)?);
     };
     let mut parameters = instance.parameters_in(inside);
     let list = parameters.nth(1).and_then(|parameter| parameter.as_list());
-    list.and_then(|list| numbers(scope, name, list)).ok_or(ReadError::Coordinates(name))
+    numbers(scope, name, list.ok_or(ReadError::Coordinates(name))?)
 }
 
 /// The first `N` numbers of `KEYWORD('…',(…` when it is written without liberties; `None` sends everything
@@ -132,21 +132,28 @@ fn numbers<const N: usize>(
     scope: Scope<'_>,
     name: InstanceName,
     mut list: Parameters<'_>,
-) -> Option<[f64; N]> {
+) -> Result<[f64; N], ReadError> {
     let mut numbers = [0.0; N];
     for number in &mut numbers {
-        let parameter = list.next()?;
-        match &parameter {
-            Parameter::Real(token) if !token.text().contains(&b'e') => {}
-            Parameter::Real(_) if scope.habits.exponent.get().is_none() => {
+        let parameter = list.next().ok_or(ReadError::Coordinates(name))?;
+        match parameter.kind() {
+            ParameterKind::Real if !parameter.text().contains(&b'e') => {}
+            ParameterKind::Real if scope.habits.exponent.get().is_none() => {
                 scope.habits.exponent.set(Some(name))
             }
-            Parameter::Integer(_) if scope.habits.integer.get().is_none() => {
+            ParameterKind::Integer if scope.habits.integer.get().is_none() => {
                 scope.habits.integer.set(Some(name))
             }
             _ => {}
         }
-        *number = parameter.as_f64().filter(|number| number.is_finite())?;
+        *number = match (parameter.as_f64(), parameter.kind()) {
+            (Some(value), _) if value.is_finite() => value,
+            (_, ParameterKind::Real) => {
+                let text = String::from_utf8_lossy(parameter.text()).into_owned();
+                return Err(ReadError::NotFinite(name, text));
+            }
+            _ => return Err(ReadError::Coordinates(name)),
+        };
     }
-    Some(numbers)
+    Ok(numbers)
 }
