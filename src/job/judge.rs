@@ -1,5 +1,7 @@
 //! Asks other programs about a written file, and meshes what they need.
 
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -7,9 +9,9 @@ use std::time::Duration;
 use super::failure::PartError;
 use super::file::{SideFormat, ValidateSettings, ValidatorName};
 use super::output::FileError;
-use crate::brep::{BodyId, BodyKind};
+use crate::brep::{BodyId, BodyKind, FaceId};
 use crate::mesh::{Mesh, Part, Scene, Tolerances, glb, off, stl, tessellate_bodies, three_mf};
-use crate::model::{Colour, Model};
+use crate::model::{Colour, Instances, Model};
 use crate::units::{Length, LengthUnit};
 use crate::validate::{Request, ValidateError, Validator, Verdict, ask_freecad, ask_openscad};
 
@@ -156,33 +158,37 @@ pub fn side_bytes(model: &Model, chord: Option<f64>, format: SideFormat) -> Resu
     written.map(|()| bytes).map_err(too_large)
 }
 
-/// All bodies as meshes with their names and colours, in the unit of the first context.
+/// All bodies, each where the assembly has it, as meshes with their names and colours, in the unit of the first
+/// context. Colours that hold in one use only are passed over.
 ///
 /// # Errors
 /// [`PartError::Mesh`] naming the face.
 pub fn scene(model: &Model, chord: Option<f64>) -> Result<Scene, PartError> {
     let rgb = |colour: Colour| [colour.red, colour.green, colour.blue];
-    let metres = model.contexts.first().map_or(1e-3, |context| context.length.metres);
+    let unit = model.contexts.first().map_or_else(LengthUnit::millimetre, |context| context.length.clone());
+    let instances = Instances::of(model, &unit, Instances::LIMIT);
+    let mut meshes: BTreeMap<BodyId, Mesh> = BTreeMap::new();
     let mut parts = Vec::new();
-    for body in model.brep.bodies.ids() {
-        let attributes = &model.bodies[body];
+    for placed in &instances.bodies {
+        let mesh = match meshes.entry(placed.body) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(place) => place.insert(mesh_of(model, &[placed.body], chord)?),
+        };
+        let attributes = &model.bodies[placed.body];
         let product = attributes.product.map(|at| model.products[at].name.clone());
         let own = Some(attributes.own.name.clone()).filter(|name| !name.is_empty());
-        let shells = &model.brep.bodies[body].shells;
+        let shells = &model.brep.bodies[placed.body].shells;
         let faces = shells.iter().flat_map(|&shell| &model.brep.shells[shell].faces);
-        let faces =
-            faces.filter_map(|&face| Some((face, rgb(model.faces[face].appearance.colour?)))).collect();
-        let mut mesh = mesh_of(model, &[body], chord)?;
-        let unit = model.contexts[model.body_context[body]].length.metres / metres;
-        mesh.vertices.iter_mut().for_each(|point| *point *= unit);
+        let colour = |face: FaceId| model.faces[face].appearance.colour;
+        let of_product = attributes.product.and_then(|at| model.products[at].appearance.colour);
         parts.push(Part {
             name: own.or(product).unwrap_or_default(),
-            mesh,
-            colour: attributes.own.appearance.colour.map(rgb),
-            faces,
+            mesh: mesh.transformed(&placed.transform),
+            colour: attributes.own.appearance.colour.or(of_product).map(rgb),
+            faces: faces.filter_map(|&face| Some((face, rgb(colour(face)?)))).collect(),
         });
     }
-    Ok(Scene { metres, parts })
+    Ok(Scene { metres: unit.metres, parts })
 }
 
 /// Triangles of all bodies.
