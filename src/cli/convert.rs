@@ -58,6 +58,8 @@ fn places(arguments: &ConvertArguments) -> Result<Vec<(PathBuf, Target)>, String
             let name = input.file_name().ok_or_else(|| format!("{} is no file", input.display()))?;
             let name = PathBuf::from(name);
             output.join(match target {
+                // What is written of a compressed file is plain.
+                Target::Step if is_compressed(&name) => name.with_extension("stp"),
                 Target::Step => name,
                 Target::Stl => name.with_extension("stl"),
                 Target::Off => name.with_extension("off"),
@@ -75,6 +77,11 @@ fn places(arguments: &ConvertArguments) -> Result<Vec<(PathBuf, Target)>, String
         places.push((place, target));
     }
     Ok(places)
+}
+
+fn is_compressed(name: &Path) -> bool {
+    let extension = name.extension().and_then(|e| e.to_str()).unwrap_or_default();
+    ["stpz", "gz", "zip"].iter().any(|known| extension.eq_ignore_ascii_case(known))
 }
 
 fn by_extension(output: &Path) -> Result<Target, String> {
