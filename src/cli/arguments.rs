@@ -81,6 +81,11 @@ pub enum Target {
     Stl,
     /// OFF
     Off,
+    /// 3MF with names and colours
+    #[value(name = "3mf")]
+    ThreeMf,
+    /// Binary glTF with names and colours
+    Glb,
 }
 
 /// Arguments of `inspect`.

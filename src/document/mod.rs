@@ -118,6 +118,20 @@ impl OpenError {
     }
 }
 
+/// One file of a format that is read, out of its container, not yet parsed.
+#[derive(Debug)]
+pub struct Unpacked {
+    source: Source,
+}
+
+impl Unpacked {
+    /// The bytes.
+    #[must_use]
+    pub fn source(&self) -> &Source {
+        &self.source
+    }
+}
+
 /// One file, parsed.
 #[derive(Debug)]
 pub struct Document {
@@ -130,6 +144,19 @@ impl Document {
     /// # Errors
     /// [`OpenError`] when it is no file of a format that is read.
     pub fn open(bytes: Vec<u8>, extension: &str, sink: &mut dyn Sink) -> Result<Self, OpenError> {
+        Ok(Self::parse(Self::unpack(bytes, extension)?, sink))
+    }
+
+    /// Parses an unpacked file. What is wrong inside it goes to the sink.
+    pub fn parse(unpacked: Unpacked, sink: &mut dyn Sink) -> Self {
+        Self { structure: ExchangeStructure::parse(unpacked.source, sink) }
+    }
+
+    /// Recognises a file and takes it out of its container, if it has one.
+    ///
+    /// # Errors
+    /// [`OpenError`] when it is no file of a format that is read.
+    pub fn unpack(bytes: Vec<u8>, extension: &str) -> Result<Unpacked, OpenError> {
         if bytes.is_empty() {
             return Err(OpenError::Empty);
         }
@@ -139,7 +166,7 @@ impl Document {
             format => (bytes, format),
         };
         match format {
-            Some(Format::Step) => Ok(Self { structure: ExchangeStructure::parse(Source::new(bytes)?, sink) }),
+            Some(Format::Step) => Ok(Unpacked { source: Source::new(bytes)? }),
             Some(format) => Err(OpenError::NotReadYet { format }),
             None => Err(OpenError::Unknown),
         }

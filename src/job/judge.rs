@@ -8,8 +8,8 @@ use super::failure::PartError;
 use super::file::{SideFormat, ValidateSettings, ValidatorName};
 use super::output::FileError;
 use crate::brep::{BodyId, BodyKind};
-use crate::mesh::{Mesh, Tolerances, off, stl, tessellate_bodies};
-use crate::model::Model;
+use crate::mesh::{Mesh, Part, Scene, Tolerances, glb, off, stl, tessellate_bodies, three_mf};
+use crate::model::{Colour, Model};
 use crate::units::{Length, LengthUnit};
 use crate::validate::{Request, ValidateError, Validator, Verdict, ask_freecad, ask_openscad};
 
@@ -141,6 +141,50 @@ pub fn solid_mesh(model: &Model, chord: Option<f64>) -> Result<Option<Mesh>, Par
     if solids.is_empty() { Ok(None) } else { mesh_of(model, &solids, chord).map(Some) }
 }
 
+/// The bytes of a mesh file of all bodies.
+///
+/// # Errors
+/// [`PartError::Mesh`] naming the face.
+pub fn side_bytes(model: &Model, chord: Option<f64>, format: SideFormat) -> Result<Vec<u8>, PartError> {
+    let mut bytes = Vec::new();
+    let written = match format {
+        SideFormat::Stl | SideFormat::Off => return Ok(mesh_bytes(&whole_mesh(model, chord)?, format)),
+        SideFormat::ThreeMf => three_mf::write(&scene(model, chord)?, &mut bytes),
+        SideFormat::Glb => glb::write(&scene(model, chord)?, &mut bytes),
+    };
+    let too_large = |error: std::io::Error| PartError::Mesh(error.to_string());
+    written.map(|()| bytes).map_err(too_large)
+}
+
+/// All bodies as meshes with their names and colours, in the unit of the first context.
+///
+/// # Errors
+/// [`PartError::Mesh`] naming the face.
+pub fn scene(model: &Model, chord: Option<f64>) -> Result<Scene, PartError> {
+    let rgb = |colour: Colour| [colour.red, colour.green, colour.blue];
+    let metres = model.contexts.first().map_or(1e-3, |context| context.length.metres);
+    let mut parts = Vec::new();
+    for body in model.brep.bodies.ids() {
+        let attributes = &model.bodies[body];
+        let product = attributes.product.map(|at| model.products[at].name.clone());
+        let own = Some(attributes.own.name.clone()).filter(|name| !name.is_empty());
+        let shells = &model.brep.bodies[body].shells;
+        let faces = shells.iter().flat_map(|&shell| &model.brep.shells[shell].faces);
+        let faces =
+            faces.filter_map(|&face| Some((face, rgb(model.faces[face].appearance.colour?)))).collect();
+        let mut mesh = mesh_of(model, &[body], chord)?;
+        let unit = model.contexts[model.body_context[body]].length.metres / metres;
+        mesh.vertices.iter_mut().for_each(|point| *point *= unit);
+        parts.push(Part {
+            name: own.or(product).unwrap_or_default(),
+            mesh,
+            colour: attributes.own.appearance.colour.map(rgb),
+            faces,
+        });
+    }
+    Ok(Scene { metres, parts })
+}
+
 /// Triangles of all bodies.
 ///
 /// # Errors
@@ -192,13 +236,13 @@ fn diagonal(model: &Model) -> f64 {
     if length > 0.0 { length } else { 1.0 }
 }
 
-/// The bytes of a mesh file.
+/// The bytes of a file of triangles alone: STL, or else OFF.
 #[must_use]
 pub fn mesh_bytes(mesh: &Mesh, format: SideFormat) -> Vec<u8> {
     let mut bytes = Vec::new();
     let written = match format {
         SideFormat::Stl => stl::write_binary(mesh, "resurf", &mut bytes),
-        SideFormat::Off => off::write(mesh, &mut bytes),
+        _ => off::write(mesh, &mut bytes),
     };
     written.expect("writing to memory cannot fail");
     bytes

@@ -84,17 +84,6 @@ impl<'a> Lowering<'a> {
         Some(found)
     }
 
-    /// Tokens and targets of the references in a list that may hold other things as well.
-    pub(super) fn points_among(
-        &self,
-        name: InstanceName,
-        attribute: &'static str,
-    ) -> Result<Vec<(Span, InstanceName)>, LowerError> {
-        let list = self.attribute(name, attribute)?.as_list();
-        let members = list.ok_or(LowerError::Attribute { name, attribute })?;
-        Ok(members.filter_map(|member| Some((member.span(), member.as_reference()?))).collect())
-    }
-
     /// The numbers of a list with their tokens.
     fn real_tokens(&self, name: InstanceName, attribute: &'static str) -> Option<Vec<(Span, f64)>> {
         let parameter = self.attribute(name, attribute).ok()?;

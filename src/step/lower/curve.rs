@@ -9,7 +9,7 @@ use super::{LowerError, Lowering};
 use crate::brep::{CoedgeId, CurveId, EdgeId};
 use crate::geometry::nurbs::NurbsCurve;
 use crate::geometry::transform::ParameterMap;
-use crate::geometry::{Curve, Curve2d, Trimmed};
+use crate::geometry::{Curve, Curve2d};
 use crate::math::{Vector2, Vector3};
 use crate::model::ChangeSet;
 
@@ -139,7 +139,6 @@ impl Lowering<'_> {
                 self.edit_real(target, "semi_axis_1", *semi_axis_1)?;
                 self.edit_real(target, "semi_axis_2", *semi_axis_2)
             }
-            (Some(Curve::Trimmed(old)), Curve::Trimmed(new)) => self.edit_trimmed(target, old, new),
             (Some(Curve::Nurbs(old)), Curve::Nurbs(new)) if self.keeps_net(target, old, new) => {
                 self.request_net(target, &compose::euclidean(old.points()), &compose::euclidean(new.points()))
             }
@@ -149,30 +148,6 @@ impl Lowering<'_> {
                 self.rewrite(target, &body)
             }
         }
-    }
-
-    /// Changes the basis of a trimmed curve in place, and the points that trim it. Parameters that trim it stay.
-    fn edit_trimmed(
-        &mut self,
-        target: InstanceName,
-        old: &Trimmed<Curve>,
-        new: &Trimmed<Curve>,
-    ) -> Result<(), LowerError> {
-        let (_, basis) = self.reference(target, "basis_curve")?;
-        let ends = |piece: &Trimmed<Curve>| (piece.start.to_bits(), piece.end.to_bits(), piece.forward);
-        if ends(old) != ends(new) || !self.is_covered(basis, 1) {
-            return Err(LowerError::Unwritable { name: target, kind: "trimmed curve with a shared basis" });
-        }
-        let (first, last) = if new.forward { (new.start, new.end) } else { (new.end, new.start) };
-        for (trim, parameter) in [("trim_1", first), ("trim_2", last)] {
-            for (token, point) in self.points_among(target, trim)? {
-                let place = new.basis.point_at(parameter);
-                self.points.add(point, token, Coordinates::Three(place.coords.into()));
-            }
-        }
-        // The basis lies less deep than this one, and the reader caps the depth.
-        let (old, new) = (Some(old.basis.as_ref().clone()), new.basis.as_ref().clone());
-        self.edit_curve(basis, &NewCurve::Space { old, new })
     }
 
     fn edit_plane_curve(
@@ -315,8 +290,10 @@ impl Lowering<'_> {
                 let points = Value::List(points.into_iter().map(Value::Reference).collect());
                 Body::simple("POLYLINE", vec![inherited.name(), points])
             }
-            Curve::Trimmed(_) | Curve::Composite(_) | Curve::Offset { .. } => {
-                return Err(LowerError::Unwritable { name: old, kind: curve.kind() });
+            Curve::Trimmed(piece) => self.trimmed_body(old, piece, inherited)?,
+            Curve::Composite(whole) => self.composite_body(old, whole, inherited)?,
+            Curve::Offset { basis, distance, direction } => {
+                self.offset_body(old, (basis, *distance, direction), inherited)?
             }
         })
     }
