@@ -50,15 +50,17 @@ fn bytes() -> Vec<u8> {
 /// Visits every parameter of every record.
 fn for_each_parameter(structure: &ExchangeStructure, mut visit: impl FnMut(&Parameter<'_>)) {
     let mut open: Vec<Parameters<'_>> = Vec::new();
-    for record in structure.instances().flat_map(|instance| instance.records()) {
-        open.push(record.parameters());
-        while let Some(cursor) = open.last_mut() {
-            let Some(parameter) = cursor.next() else {
-                open.pop();
-                continue;
-            };
-            visit(&parameter);
-            open.extend(parameter.members());
+    for instance in structure.instances() {
+        for record in instance.records() {
+            open.push(record.parameters());
+            while let Some(cursor) = open.last_mut() {
+                let Some(parameter) = cursor.next() else {
+                    open.pop();
+                    continue;
+                };
+                visit(&parameter);
+                open.extend(parameter.members());
+            }
         }
     }
 }

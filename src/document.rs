@@ -90,7 +90,7 @@ pub enum OpenError {
     #[error("neither the content nor the extension is that of a known format")]
     Unknown,
     /// The file is empty.
-    #[error("the file is empty")]
+    #[error("the file is empty; export the part again")]
     Empty,
     /// The file is larger than can be addressed.
     #[error(transparent)]
@@ -142,6 +142,13 @@ impl Document {
     #[must_use]
     pub fn source(&self) -> &Source {
         self.structure.source()
+    }
+
+    /// Whether a number may stand in the file that no finite one holds: a cheap look at the bytes, which errs on
+    /// the side of yes.
+    #[must_use]
+    pub fn may_overflow(&self) -> bool {
+        step::may_overflow(self.source().bytes())
     }
 
     /// Line of a record, from 1; `None` when the file has no such record.

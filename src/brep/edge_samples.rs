@@ -77,20 +77,31 @@ pub fn edge_range(brep: &Brep, edge: EdgeId) -> Option<EdgeRange> {
     (start.is_finite() && end.is_finite()).then_some(EdgeRange { start, end })
 }
 
-/// The parameter of a vertex, with the ends of a B-spline preferred where they are as near as anything.
+/// The parameter of a vertex, with the ends of a bounded curve preferred where they are as near as anything.
 fn end_parameter(curve: &Curve, point: &Point3<f64>) -> f64 {
-    let Curve::Nurbs(nurbs) = curve else { return curve.parameter_of(point, None) };
-    let found = nurbs.closest(point);
-    let (first, last) = nurbs.domain();
-    let slack = AT_END * nurbs.bounding_box().diagonal();
-    let away = |t: f64| (nurbs.point_at(t) - point).norm();
-    let (a, b) = (away(first), away(last));
-    if a <= b && a <= found.distance + slack {
+    let found = curve.parameter_of(point, None);
+    let size = match curve {
+        Curve::Nurbs(nurbs) | Curve::Polyline(nurbs) => nurbs.bounding_box().diagonal(),
+        Curve::Trimmed(_) | Curve::Composite(_) | Curve::Offset { .. } => {
+            let (first, last) = curve.domain();
+            if !(last - first).is_finite() {
+                return found;
+            }
+            let middle = curve.point_at(0.5 * (first + last));
+            (middle - curve.point_at(first)).norm()
+        }
+        _ => return found,
+    };
+    let (first, last) = curve.domain();
+    let slack = AT_END * size;
+    let away = |t: f64| (curve.point_at(t) - point).norm();
+    let (a, b, nearest) = (away(first), away(last), away(found));
+    if a <= b && a <= nearest + slack {
         first
-    } else if b <= found.distance + slack {
+    } else if b <= nearest + slack {
         last
     } else {
-        found.t
+        found
     }
 }
 
@@ -149,26 +160,57 @@ fn center(a: &Point3<f64>, b: &Point3<f64>) -> Point3<f64> {
     a + (b - a) * 0.5
 }
 
-/// Ends and the parameters between them where the curve may change its form, in the edge's direction.
-fn breaks(curve: &Curve, range: EdgeRange) -> Vec<f64> {
-    let (low, high) = (range.start.min(range.end), range.start.max(range.end));
-    let mut inner: Vec<f64> = match curve {
+/// Parameters between two where a curve may change its form, ascending.
+///
+/// Quarters of conics, knots, the joints of composites; none of a line.
+#[must_use]
+pub fn inner_breaks(curve: &Curve, low: f64, high: f64) -> Vec<f64> {
+    let mut all: Vec<f64> = match curve {
         Curve::Line { .. } => Vec::new(),
         Curve::Circle { .. } | Curve::Ellipse { .. } => {
             let count = ((high - low) / FRAC_PI_2).ceil().clamp(1.0, 8.0) as usize;
             (1..count).map(|i| low + (high - low) * (i as f64 / count as f64)).collect()
         }
-        Curve::Nurbs(nurbs) => {
-            let (knots, _) = nurbs.knots().distinct();
-            let (first, last) = nurbs.domain();
-            let wrapped = knots.iter().map(|k| k + (last - first));
-            let mut all: Vec<f64> =
-                knots.iter().copied().chain(wrapped).filter(|&k| k > low && k < high).collect();
-            all.sort_by(f64::total_cmp);
-            all.dedup();
-            all
+        // Halves at the vertex, where the bend is greatest.
+        Curve::Parabola { .. } | Curve::Hyperbola { .. } => vec![0.0],
+        Curve::Nurbs(nurbs) | Curve::Polyline(nurbs) => repeated(curve, nurbs.knots().distinct().0),
+        Curve::Trimmed(piece) => {
+            let mut inner = inner_breaks(&piece.basis, piece.start, piece.end);
+            if !piece.forward {
+                inner.iter_mut().for_each(|t| *t = -*t);
+            }
+            let (start, end) = piece.domain();
+            inner.extend([start, end]);
+            repeated(curve, inner)
         }
+        Curve::Composite(whole) => {
+            let mut inner = whole.breaks().to_vec();
+            for (at, segment) in whole.segments().iter().enumerate() {
+                let (low, high) = segment.domain;
+                inner.extend(
+                    inner_breaks(&segment.curve, low, high).iter().map(|&t| whole.parameter_on(at, t)),
+                );
+            }
+            repeated(curve, inner)
+        }
+        Curve::Offset { basis, .. } => inner_breaks(basis, low, high),
     };
+    all.retain(|&t| t > low && t < high);
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    all
+}
+
+/// Parameters, and where the curve is closed those a turn on and a turn back.
+fn repeated(curve: &Curve, parameters: Vec<f64>) -> Vec<f64> {
+    let Some(period) = curve.period() else { return parameters };
+    [-period, 0.0, period].iter().flat_map(|turn| parameters.iter().map(move |t| t + turn)).collect()
+}
+
+/// Ends and the parameters between them where the curve may change its form, in the edge's direction.
+fn breaks(curve: &Curve, range: EdgeRange) -> Vec<f64> {
+    let (low, high) = (range.start.min(range.end), range.start.max(range.end));
+    let mut inner = inner_breaks(curve, low, high);
     if range.start > range.end {
         inner.reverse();
     }

@@ -258,7 +258,7 @@ impl<'a> Walk<'a> {
         along.iter().all(|at| {
             let p = pcurve.point_at(at.t);
             let inside = at.t >= low - 1e-9 * (high - low) && at.t <= high + 1e-9 * (high - low);
-            let conic = matches!(pcurve, Curve2d::Ellipse { .. });
+            let conic = pcurve.repeats();
             (inside || conic) && (self.surface.point(p.x, p.y) - at.point).norm() <= limit
         })
     }
@@ -283,9 +283,15 @@ impl<'a> Walk<'a> {
             (None, Some(seed)) => {
                 let found = self.surface.parameters_of(&at.point, Some(seed));
                 let away = (self.surface.point(found.0, found.1) - at.point).norm();
-                let swept =
-                    matches!(self.surface, Surface::LinearExtrusion { .. } | Surface::Revolution { .. });
-                if swept && away > self.lost { self.surface.parameters_of(&at.point, None) } else { found }
+                let searched = !matches!(
+                    self.surface,
+                    Surface::Plane(_)
+                        | Surface::Cylinder { .. }
+                        | Surface::Cone { .. }
+                        | Surface::Sphere { .. }
+                        | Surface::Torus { .. }
+                );
+                if searched && away > self.lost { self.surface.parameters_of(&at.point, None) } else { found }
             }
             (None, None) => self.surface.parameters_of(&at.point, None),
         };

@@ -100,8 +100,9 @@ fn examine(
         printer.message(Severity::Warning, &format!("{}: {unasked}", path.display()));
     }
     checked.validators = judged.verdicts;
-    let sound = read.diagnostics.worst() != Some(Severity::Error);
-    Ok(sound && checked.findings.is_empty() && checked.validators.iter().all(|verdict| verdict.accepted))
+    Ok(!read.has_errors()
+        && checked.findings.is_empty()
+        && checked.validators.iter().all(|verdict| verdict.accepted))
 }
 
 fn plain(checked: &Checked) -> String {

@@ -10,7 +10,7 @@ use crate::diagnostic::Severity;
 use crate::document::Format;
 use crate::job::failure::PartError;
 use crate::job::file::SideFormat;
-use crate::job::judge::{mesh_bytes, whole_mesh};
+use crate::job::judge::{chord, mesh_bytes, whole_mesh};
 use crate::job::output::Staged;
 use crate::job::part::Read;
 use crate::job::plan::normal;
@@ -104,16 +104,19 @@ fn one(
         Target::Off => Some(SideFormat::Off),
     };
     let bytes = match format {
-        None => None,
+        None => {
+            read.look_for_overflow();
+            None
+        }
         Some(format) => {
             let model = read.model();
-            let unit = model.contexts.first().map(|context| &context.length);
-            let chord = tolerance.zip(unit).map(|(length, unit)| length.in_unit(unit));
+            let chord = tolerance.map(|length| chord(&model, length, "--tolerance")).transpose()?;
             Some(mesh_bytes(&whole_mesh(&model, chord)?, format))
         }
     };
     show::diagnostics(printer, input, &read);
-    read.refuse_damage()?;
+    // The mesh of what could be read would be the mesh of half a part; a copy is whole whatever it means.
+    if bytes.is_some() { read.refuse_errors() } else { read.refuse_damage() }?;
     let bytes = bytes.as_deref().unwrap_or_else(|| read.document.source().bytes());
     Staged::write(output, bytes).and_then(Staged::commit).map_err(PartError::Output)
 }

@@ -15,10 +15,10 @@ use crate::job::select;
 /// Inspects a part and gives the exit code.
 pub fn inspect(arguments: &InspectArguments, printer: &mut Printer) -> u8 {
     match seen(arguments, printer) {
-        Ok(contents) => {
+        Ok((contents, whole)) => {
             let text = if arguments.json { json(&contents) } else { plain(&contents) };
             printer.data(&text);
-            exit_code::DONE
+            if whole { exit_code::DONE } else { exit_code::GATE }
         }
         Err(error) => {
             show::part_error(printer, &arguments.part, &error);
@@ -27,7 +27,8 @@ pub fn inspect(arguments: &InspectArguments, printer: &mut Printer) -> u8 {
     }
 }
 
-fn seen(arguments: &InspectArguments, printer: &mut Printer) -> Result<Contents, PartError> {
+/// What the part holds, and whether all of it was understood.
+fn seen(arguments: &InspectArguments, printer: &mut Printer) -> Result<(Contents, bool), PartError> {
     let mut read = Read::file(&arguments.part)?;
     let model = read.model();
     show::diagnostics(printer, &arguments.part, &read);
@@ -37,7 +38,7 @@ fn seen(arguments: &InspectArguments, printer: &mut Printer) -> Result<Contents,
         None if arguments.faces => model.brep.faces.ids().collect(),
         None => Vec::new(),
     };
-    Ok(contents(&model, &faces))
+    Ok((contents(&model, &faces), !read.has_errors()))
 }
 
 fn json(contents: &Contents) -> String {

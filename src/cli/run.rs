@@ -36,6 +36,11 @@ pub fn run(arguments: &RunArguments, printer: &mut Printer) -> u8 {
 /// The job and its parts, or the exit code after a message.
 fn planned(path: &Path, printer: &mut Printer) -> Result<(Job, Vec<Part>), u8> {
     let name = path.to_string_lossy();
+    if path.is_dir() {
+        printer
+            .message(Severity::Error, &format!("job file {name} is a folder; expected a TOML or JSON file"));
+        return Err(exit_code::USAGE);
+    }
     let text = std::fs::read_to_string(path).map_err(|error| {
         printer.message(Severity::Error, &format!("job file {name}: {error}"));
         exit_code::USAGE

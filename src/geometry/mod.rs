@@ -3,19 +3,22 @@
 //! Knows neither topology nor files. Angles are radians here, whatever the file counts in; lengths are
 //! in file units.
 
+pub mod bounded;
 pub mod curve;
 pub mod curve2d;
 mod evaluate_curve;
 mod evaluate_surface;
+mod foot_on_curve;
 pub mod nurbs;
 pub mod parameters;
 pub mod surface;
 pub mod transform;
 
+pub use bounded::{Composite, Segment, Trimmed};
 pub use curve::Curve;
 pub use curve2d::Curve2d;
 pub use nurbs::SurfaceDerivatives;
-pub use surface::Surface;
+pub use surface::{Patch, PatchGrid, Surface};
 pub use transform::{NotRepresentable, ParameterMap};
 
 /// Geometry that was read, or the entity name of geometry that is only carried.

@@ -4,6 +4,7 @@
 //! with a seed, of the closest point near the seed. Without a seed, angles are given in `[0, 2π)`; with
 //! one, in the turn around it, so that a walk along an edge does not jump at a seam.
 
+use super::foot_on_curve::{hyperbola_seeds, nearest_foot, on_polyline, parabola_seeds};
 use super::nurbs::{SearchRange, SurfaceLocator, foot_point};
 use super::{Curve, Surface};
 use crate::math::{Frame, Point3, Vector3};
@@ -13,6 +14,9 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 const PROFILE_SAMPLES: usize = 8;
 /// Steps of Newton's method on an ellipse.
 const ELLIPSE_STEPS: usize = 50;
+/// Greatest parameter of a parabola or hyperbola that is searched without a guess: ten times a hyperbola's
+/// axes, nine focal distances.
+const CONIC_REACH: f64 = 3.0;
 /// Half the length of an unbounded profile that is searched, in units of its derivative.
 const LINE_REACH: f64 = 1.0;
 
@@ -52,10 +56,36 @@ impl Curve {
                 let t = on_ellipse(*semi_axis_1, *semi_axis_2, local.x, local.y);
                 angle(t.sin(), t.cos(), seed)
             }
+            Self::Parabola { frame, focal_distance } => {
+                nearest_foot(self, point, parabola_seeds(frame, *focal_distance, point)).0
+            }
+            Self::Hyperbola { frame, semi_axis, semi_imaginary_axis } => {
+                nearest_foot(self, point, hyperbola_seeds(frame, *semi_axis, *semi_imaginary_axis, point)).0
+            }
             Self::Nurbs(curve) => match seed {
                 Some(seed) => curve.closest_from(point, seed).t,
                 None => curve.closest(point).t,
             },
+            Self::Polyline(curve) => on_polyline(curve.control_points(), point).0,
+            Self::Trimmed(piece) => {
+                let seed = seed.map(|seed| piece.locate(seed).0);
+                piece.parameter_of(piece.basis.parameter_of(point, seed), piece.basis.period())
+            }
+            Self::Composite(whole) => {
+                let mut best = (0.0, f64::INFINITY);
+                for (at, segment) in whole.segments().iter().enumerate() {
+                    let t = whole.parameter_on(at, segment.curve.parameter_of(point, None));
+                    let away = (self.point_at(t) - point).norm_squared();
+                    if away < best.1 {
+                        best = (t, away);
+                    }
+                }
+                best.0
+            }
+            Self::Offset { basis, .. } => {
+                let seeds = [seed, Some(basis.parameter_of(point, seed))];
+                nearest_foot(self, point, seeds.into_iter().flatten()).0
+            }
         }
     }
 }
@@ -106,10 +136,8 @@ impl Surface {
                 let local = frame.local(point);
                 (turn_angle(&local, seed), local.z.atan2(local.x.hypot(local.y)))
             }
-            Self::Torus { frame, major_radius, .. } => {
-                let local = frame.local(point);
-                let v = angle(local.z, local.x.hypot(local.y) - major_radius, seed.map(|s| s.1));
-                (turn_angle(&local, seed), v)
+            Self::Torus { frame, major_radius, minor_radius } => {
+                on_torus(&frame.local(point), *major_radius, *minor_radius, seed)
             }
             Self::LinearExtrusion { curve, direction } => match seed {
                 Some(seed) => self.searched(point, seed).0,
@@ -128,6 +156,37 @@ impl Surface {
                     None => SurfaceLocator::new(surface, self.wrap()).closest(point),
                 };
                 (found.u, found.v)
+            }
+            // The normals of an offset are those of its basis, so the feet have the same parameters; but on the
+            // far side of a centre of curvature another foot of the basis may be the nearer one.
+            Self::Offset { basis, .. } => {
+                let on_basis = basis.parameters_of(point, seed);
+                let away = |at: (f64, f64)| (self.point(at.0, at.1) - point).norm();
+                let (searched, found) = self.searched(point, seed.unwrap_or(on_basis));
+                if found < away(on_basis) { searched } else { on_basis }
+            }
+            Self::Trimmed { basis, u, v, forward } => {
+                let turned =
+                    |(u, v): (f64, f64)| (if forward[0] { u } else { -u }, if forward[1] { v } else { -v });
+                let found = basis.parameters_of(point, seed.map(turned));
+                let periods = basis.periods();
+                let held = |x: f64, (low, high): (f64, f64), period: Option<f64>| {
+                    period.map_or(x, |p| unwrapped(x, 0.5 * (low + high), p)).clamp(low, high)
+                };
+                turned((held(found.0, *u, periods.0), held(found.1, *v, periods.1)))
+            }
+            Self::CurveBounded { basis } => basis.parameters_of(point, seed),
+            Self::Composite(grid) => {
+                let mut best = ((0.0, 0.0), f64::INFINITY);
+                for at in 0..grid.patches().len() {
+                    let on_patch = grid.patches()[at].surface.parameters_of(point, None);
+                    let found = grid.parameters_on(at, on_patch);
+                    let away = (self.point(found.0, found.1) - point).norm_squared();
+                    if away < best.1 {
+                        best = (found, away);
+                    }
+                }
+                best.0
             }
         }
     }
@@ -158,6 +217,18 @@ fn turn_angle(local: &Vector3<f64>, seed: Option<(f64, f64)>) -> f64 {
         return seed.map_or(0.0, |s| s.0);
     }
     angle(local.y, local.x, seed.map(|s| s.0))
+}
+
+/// The nearer of the two circles in the point's half plane and the opposite one: on a torus that meets itself
+/// the inner part lies on the opposite one.
+fn on_torus(local: &Vector3<f64>, major: f64, minor: f64, seed: Option<(f64, f64)>) -> (f64, f64) {
+    let rho = local.x.hypot(local.y);
+    let away = |rho: f64| ((rho - major).hypot(local.z) - minor).abs();
+    let v = |rho: f64| angle(local.z, rho - major, seed.map(|s| s.1));
+    if major < minor && away(-rho) < away(rho) {
+        return (turn_angle(&Vector3::new(-local.x, -local.y, local.z), seed), v(-rho));
+    }
+    (turn_angle(local, seed), v(rho))
 }
 
 /// The nearer of the two generatrices in the point's half plane; beyond the apex the cone goes on with the
@@ -198,7 +269,20 @@ fn profile_samples(curve: &Curve) -> Vec<f64> {
         Curve::Circle { .. } | Curve::Ellipse { .. } => {
             (0..4).flat_map(|q| spread(FRAC_PI_2 * f64::from(q), FRAC_PI_2 * f64::from(q + 1))).collect()
         }
-        Curve::Nurbs(nurbs) => {
+        Curve::Parabola { .. } | Curve::Hyperbola { .. } => spread(-CONIC_REACH, CONIC_REACH).collect(),
+        Curve::Composite(whole) => {
+            whole.breaks().windows(2).flat_map(|pair| spread(pair[0], pair[1])).collect()
+        }
+        Curve::Trimmed(piece) => {
+            let (start, end) = piece.domain();
+            let inner = profile_samples(&piece.basis).into_iter().map(|t| piece.parameter_of(t, None));
+            let mut all: Vec<f64> = inner.chain(spread(start, end)).collect();
+            all.sort_by(f64::total_cmp);
+            all.dedup();
+            all
+        }
+        Curve::Offset { basis, .. } => profile_samples(basis),
+        Curve::Nurbs(nurbs) | Curve::Polyline(nurbs) => {
             let knots = nurbs.knots();
             knots.spans().flat_map(|k| spread(knots.knots()[k], knots.knots()[k + 1])).collect()
         }

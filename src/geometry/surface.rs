@@ -59,6 +59,90 @@ pub enum Surface {
     },
     /// A B-spline surface in any of its forms.
     Nurbs(NurbsSurface),
+    /// `basis(u, v) + distance · normal(u, v)`.
+    Offset {
+        /// The surface that is left by the distance.
+        basis: Box<Surface>,
+        /// Signed distance along the normal `du × dv`.
+        distance: f64,
+    },
+    /// A parameter rectangle of a surface. Where a sense agrees, the parameter is the basis surface's; else
+    /// its negative.
+    Trimmed {
+        /// The surface that is trimmed.
+        basis: Box<Surface>,
+        /// Least and greatest `u` on the basis.
+        u: (f64, f64),
+        /// Least and greatest `v` on the basis.
+        v: (f64, f64),
+        /// Whether `u` and `v` run as the basis's do.
+        forward: [bool; 2],
+    },
+    /// A surface that the standard bounds by curves on it. As the surface of a face it is its basis: the
+    /// face has bounds of its own.
+    CurveBounded {
+        /// The surface.
+        basis: Box<Surface>,
+    },
+    /// A grid of patches.
+    Composite(PatchGrid),
+}
+
+/// A patch of a composite surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Patch {
+    /// The surface, of finite domain.
+    pub surface: Surface,
+    /// Whether `u` and `v` of the composite run as those of the patch.
+    pub forward: [bool; 2],
+}
+
+/// Patches in rows along `v` and columns along `u`: ISO 10303-42 `rectangular_composite_surface`. Each spans a
+/// unit square of the parameters, `(i, j)` that from `(i, j)` to `(i + 1, j + 1)`.
+///
+/// INVARIANT: one patch at least, all domains finite, `patches.len()` a multiple of `rows`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PatchGrid {
+    patches: Vec<Patch>,
+    rows: usize,
+}
+
+impl PatchGrid {
+    /// Takes patches, those of one `u` together; `rows` of them along `v`. `None` when there is none, they
+    /// are no full grid, or the domain of one is not finite.
+    #[must_use]
+    pub fn new(patches: Vec<Patch>, rows: usize) -> Option<Self> {
+        let finite = |patch: &Patch| {
+            let ((u0, u1), (v0, v1)) = patch.surface.domain();
+            [u0, u1, v0, v1].iter().all(|x| x.is_finite()) && u1 > u0 && v1 > v0
+        };
+        let full = rows > 0 && !patches.is_empty() && patches.len().is_multiple_of(rows);
+        (full && patches.iter().all(finite)).then_some(Self { patches, rows })
+    }
+
+    /// The patches, those of one `u` together.
+    #[must_use]
+    pub fn patches(&self) -> &[Patch] {
+        &self.patches
+    }
+
+    /// Count of patches along `u` and along `v`.
+    #[must_use]
+    pub fn shape(&self) -> (usize, usize) {
+        (self.patches.len() / self.rows, self.rows)
+    }
+
+    /// The same grid of other surfaces.
+    ///
+    /// # Errors
+    /// What `change` fails with.
+    pub fn try_map<E>(&self, change: impl Fn(&Surface) -> Result<Surface, E>) -> Result<Self, E> {
+        let patches = self
+            .patches
+            .iter()
+            .map(|patch| Ok(Patch { surface: change(&patch.surface)?, forward: patch.forward }));
+        Ok(Self { patches: patches.collect::<Result<_, E>>()?, rows: self.rows })
+    }
 }
 
 impl Surface {
@@ -74,6 +158,10 @@ impl Surface {
             Self::LinearExtrusion { .. } => "linear_extrusion",
             Self::Revolution { .. } => "revolution",
             Self::Nurbs(_) => "b_spline",
+            Self::Offset { .. } => "offset",
+            Self::Trimmed { .. } => "rectangular_trimmed",
+            Self::CurveBounded { .. } => "curve_bounded",
+            Self::Composite(_) => "rectangular_composite",
         }
     }
 }

@@ -6,7 +6,7 @@
 //! [`Surface::image_turns_normal`] says otherwise: a mirror turns it on surfaces that keep their parameters.
 
 use super::nurbs::NurbsCurve2;
-use super::{Curve, Curve2d, Surface};
+use super::{Curve, Curve2d, Surface, Trimmed};
 use crate::math::{Affine, Frame, Matrix2, Point2, Vector2, Vector3, cofactor};
 
 /// The affine image is not of a kind that the exchange formats know.
@@ -96,8 +96,55 @@ impl Curve {
                 conic_image(map, frame, *semi_axis_1, *semi_axis_2, self.kind())
             }
             Self::Nurbs(curve) => Ok((Self::Nurbs(curve.transformed(map)), 0.0)),
+            Self::Polyline(curve) => Ok((Self::Polyline(curve.transformed(map)), 0.0)),
+            Self::Parabola { frame, focal_distance } => {
+                let (frame, factor) = similar_frame(map, frame, self.kind())?;
+                Ok((Self::Parabola { frame, focal_distance: focal_distance * factor }, 0.0))
+            }
+            Self::Hyperbola { frame, semi_axis, semi_imaginary_axis } => {
+                let (frame, factor) = similar_frame(map, frame, self.kind())?;
+                let (semi_axis, semi_imaginary_axis) = (semi_axis * factor, semi_imaginary_axis * factor);
+                Ok((Self::Hyperbola { frame, semi_axis, semi_imaginary_axis }, 0.0))
+            }
+            Self::Trimmed(piece) => {
+                let (basis, shift) = piece.basis.transformed_with_shift(map)?;
+                let (start, end) = (piece.start - shift, piece.end - shift);
+                let shift = if piece.forward { shift } else { -shift };
+                Ok((
+                    Self::Trimmed(Trimmed { basis: Box::new(basis), start, end, forward: piece.forward }),
+                    shift,
+                ))
+            }
+            Self::Composite(whole) => {
+                // A segment whose parameter would shift would need another interval: not offered.
+                let image = whole.try_map(|curve| {
+                    let (image, shift) = curve.transformed_with_shift(map)?;
+                    let refused = NotRepresentable::Kind { kind: self.kind() };
+                    if shift == 0.0 { Ok(image) } else { Err(refused) }
+                })?;
+                Ok((Self::Composite(image), 0.0))
+            }
+            Self::Offset { basis, distance, direction } => {
+                let refused = NotRepresentable::Kind { kind: self.kind() };
+                let factor = map.similarity_factor().ok_or(refused)?;
+                let (basis, shift) = basis.transformed_with_shift(map)?;
+                // A mirror turns a cross product against the images of its factors.
+                let turn = if map.keeps_orientation() { 1.0 } else { -1.0 };
+                let direction = map.vector(direction) / factor;
+                let distance = distance * factor * turn;
+                Ok((Self::Offset { basis: Box::new(basis), distance, direction }, shift))
+            }
         }
     }
+}
+
+/// The frame of a curve's image under a similarity, its second axis the image of the second axis, and the
+/// growth.
+fn similar_frame(map: &Affine, frame: &Frame, kind: &'static str) -> Result<(Frame, f64), NotRepresentable> {
+    let factor = map.similarity_factor().ok_or(NotRepresentable::Kind { kind })?;
+    let (x, y) = (map.vector(&frame.x), map.vector(&frame.y));
+    let frame = Frame::from_axis(map.point(&frame.origin), x.cross(&y), Some(x));
+    Ok((frame.ok_or(NotRepresentable::Degenerate { kind })?, factor))
 }
 
 /// Whether a length is not above a bound, or not a number.
@@ -218,15 +265,47 @@ impl Surface {
                 Ok(Self::Revolution { curve: Box::new(curve.transformed(map)?), frame: image })
             }
             Self::Nurbs(surface) => Ok(Self::Nurbs(surface.transformed(map))),
+            Self::Offset { basis, distance } => {
+                let factor = map.similarity_factor().ok_or(refused)?;
+                let turn = if basis.image_turns_normal(map) { -1.0 } else { 1.0 };
+                let distance = distance * factor * turn;
+                Ok(Self::Offset { basis: Box::new(basis.transformed(map)?), distance })
+            }
+            // The rectangle stays what it is only where the parameters do.
+            Self::Trimmed { basis, u, v, forward } => {
+                if !basis.parameter_map(map)?.is_identity() {
+                    return Err(refused);
+                }
+                let basis = Box::new(basis.transformed(map)?);
+                Ok(Self::Trimmed { basis, u: *u, v: *v, forward: *forward })
+            }
+            Self::CurveBounded { .. } => Err(refused),
+            Self::Composite(grid) => {
+                let image = grid.try_map(|surface| {
+                    if surface.parameter_map(map)?.is_identity() {
+                        surface.transformed(map)
+                    } else {
+                        Err(NotRepresentable::Kind { kind })
+                    }
+                })?;
+                Ok(Self::Composite(image))
+            }
         }
     }
 
     /// Whether the natural normal of the image points against `M⁻ᵀ n`, so that the face's sense has to turn.
     #[must_use]
     pub fn image_turns_normal(&self, map: &Affine) -> bool {
-        let keeps_parameters =
-            matches!(self, Self::Nurbs(_) | Self::LinearExtrusion { .. } | Self::Revolution { .. });
-        keeps_parameters && !map.keeps_orientation()
+        match self {
+            Self::Nurbs(_) | Self::LinearExtrusion { .. } | Self::Revolution { .. } => {
+                !map.keeps_orientation()
+            }
+            Self::Offset { basis, .. } | Self::Trimmed { basis, .. } | Self::CurveBounded { basis } => {
+                basis.image_turns_normal(map)
+            }
+            Self::Composite(grid) => grid.patches()[0].surface.image_turns_normal(map),
+            _ => false,
+        }
     }
 
     /// The parameters on [`transformed`](Self::transformed) of the image of the point at given parameters.
@@ -263,7 +342,10 @@ impl Surface {
                 let shift = curve.transformed_with_shift(map)?.1;
                 Ok(ParameterMap::stretch(1.0, 1.0, Vector2::new(0.0, -shift)))
             }
-            Self::Nurbs(_) => Ok(ParameterMap::identity()),
+            Self::Nurbs(_) | Self::Composite(_) => Ok(ParameterMap::identity()),
+            Self::Offset { basis, .. } | Self::Trimmed { basis, .. } | Self::CurveBounded { basis } => {
+                basis.parameter_map(map)
+            }
         }
     }
 }
@@ -307,6 +389,39 @@ impl Curve2d {
                     .map_err(|_| NotRepresentable::Degenerate { kind: "b_spline" })?;
                 Ok(Self::Nurbs(image))
             }
+            _ => self.transformed_kept(map),
+        }
+    }
+
+    /// The image under the maps that keep the other kinds: shifts for all but the scaled ones.
+    fn transformed_kept(&self, map: &ParameterMap) -> Result<Self, NotRepresentable> {
+        let shifts = map.linear == Matrix2::identity();
+        let refused = NotRepresentable::Kind { kind: self.kind() };
+        match self {
+            Self::Polyline(curve) => match Self::Nurbs(curve.clone()).transformed(map)? {
+                Self::Nurbs(image) => Ok(Self::Polyline(image)),
+                _ => Err(refused),
+            },
+            Self::Trimmed(piece) => {
+                let basis = Box::new(piece.basis.transformed(map)?);
+                Ok(Self::Trimmed(Trimmed { basis, ..piece.clone() }))
+            }
+            Self::Composite(whole) => whole.try_map(|curve| curve.transformed(map)).map(Self::Composite),
+            Self::Parabola { vertex, x, focal_distance } if shifts => {
+                Ok(Self::Parabola { vertex: map.point(vertex), x: *x, focal_distance: *focal_distance })
+            }
+            Self::Hyperbola { center, .. } if shifts => {
+                let mut image = self.clone();
+                if let Self::Hyperbola { center: moved, .. } = &mut image {
+                    *moved = map.point(center);
+                }
+                Ok(image)
+            }
+            Self::Offset { basis, distance } if shifts => {
+                Ok(Self::Offset { basis: Box::new(basis.transformed(map)?), distance: *distance })
+            }
+            _ if map.is_identity() => Ok(self.clone()),
+            _ => Err(refused),
         }
     }
 }

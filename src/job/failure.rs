@@ -10,8 +10,19 @@ use crate::validate::ValidateError;
 #[derive(Debug, thiserror::Error)]
 pub enum PartError {
     /// The input cannot be read from its place.
-    #[error("the input cannot be read: {0}")]
+    #[error("the input cannot be read: {}{}", .0.source, advice(.0))]
     Input(FileError),
+    /// The input is a folder.
+    #[error("the input is a folder; name the files in it, such as `{}`", .0.join("*.step").display())]
+    Folder(std::path::PathBuf),
+    /// A key of the job, or an argument, does not fit the part.
+    #[error("`{key}`: {message}")]
+    Setting {
+        /// The key in the job's words.
+        key: &'static str,
+        /// Lower-case fragment: what was found, and what would fit.
+        message: String,
+    },
     /// The input is no file of a known format.
     #[error(transparent)]
     Open(#[from] OpenError),
@@ -49,6 +60,14 @@ pub enum PartError {
     Internal,
 }
 
+/// What to do about an input that cannot be read.
+fn advice(error: &FileError) -> &'static str {
+    match error.source.kind() {
+        std::io::ErrorKind::PermissionDenied => "; allow this user to read it",
+        _ => "",
+    }
+}
+
 /// Exit codes of a part: what a caller may rely on, and whether trying again makes sense.
 pub mod code {
     /// All well.
@@ -79,7 +98,8 @@ impl PartError {
             Self::Input(error) if error.source.kind() == std::io::ErrorKind::NotFound => code::UNREADABLE,
             Self::Input(_) | Self::Output(_) => code::IO,
             Self::Open(OpenError::TooLarge(_)) => code::RESOURCE,
-            Self::Open(_) | Self::Damaged(_) => code::UNREADABLE,
+            Self::Open(_) | Self::Damaged(_) | Self::Folder(_) => code::UNREADABLE,
+            Self::Setting { .. } => code::USAGE,
             Self::Operate(error) if error.code().starts_with("internal.") => code::INTERNAL,
             Self::Operate(_) | Self::Lower(_) | Self::Mesh(_) => code::OPERATION,
             Self::NoVerdict(ValidateError::Missing { .. }) => code::VALIDATOR_MISSING,
@@ -94,6 +114,8 @@ impl PartError {
     pub fn failure(&self) -> Failure {
         let code = match self {
             Self::Input(_) => "io.input",
+            Self::Folder(_) => "io.folder",
+            Self::Setting { .. } => "job.setting",
             Self::Open(error) => error.code(),
             Self::Damaged(_) => "document.damaged",
             Self::Operate(error) => error.code(),

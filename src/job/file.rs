@@ -99,8 +99,22 @@ impl SideFormat {
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ToleranceSettings {
-    /// Greatest distance between a side mesh and its part. Left out: a thousandth of the part's diagonal.
+    /// Greatest distance between a side mesh and its part: positive, and at most the part's diagonal. Left out:
+    /// a thousandth of it.
+    #[serde(deserialize_with = "positive_length")]
     pub length: Option<LengthSetting>,
+}
+
+fn positive_length<'de, D: serde::Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<LengthSetting>, D::Error> {
+    let length = Option::<LengthSetting>::deserialize(deserializer)?;
+    match length.map(|length| length.0) {
+        Some(Length::FileUnits(value) | Length::Metres(value)) if !(value.is_finite() && value > 0.0) => {
+            Err(de::Error::custom(format!("{value} is not a tolerance; expected a positive length")))
+        }
+        _ => Ok(length),
+    }
 }
 
 /// A length: a number in file units, or a text with a unit such as `"0.5 mm"`.
@@ -238,9 +252,9 @@ pub struct ConstrainedScale {
     /// Fixed point of the scaling. Left out: the origin.
     #[serde(default)]
     pub center: Option<[LengthSetting; 3]>,
-    /// Directions of the three axes, orthonormal. Left out: the coordinate axes.
+    /// Directions of the three axes, orthonormal and right-handed. Left out: the coordinate axes.
     #[serde(default)]
-    pub axes: Option<[[f64; 3]; 3]>,
+    pub axes: Option<Axes>,
     /// Faces to scale. Left out: the whole part.
     #[serde(default)]
     pub face: Option<Selector>,
@@ -288,6 +302,45 @@ impl TryFrom<[f64; 3]> for Factors {
             Some(factor) => Err(format!("{factor} is not a factor; expected a positive number")),
             None => Ok(Self(factors)),
         }
+    }
+}
+
+/// Three directions of length 1, at right angles to each other, right-handed.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[serde(try_from = "[[f64; 3]; 3]")]
+#[schemars(with = "[[f64; 3]; 3]")]
+pub struct Axes(pub [[f64; 3]; 3]);
+
+/// Greatest deviation of a length from 1 and of a cosine from 0: what the operation accepts, directions typed with
+/// nine decimals.
+const ORTHONORMAL: f64 = 1e-8;
+
+impl TryFrom<[[f64; 3]; 3]> for Axes {
+    type Error = String;
+    fn try_from(axes: [[f64; 3]; 3]) -> Result<Self, String> {
+        let dot = |a: usize, b: usize| (0..3).map(|k| axes[a][k] * axes[b][k]).sum::<f64>();
+        // Comparisons with NaN are false: what is not near is far.
+        let near = |value: f64, goal: f64| (value - goal).abs() <= ORTHONORMAL;
+        for axis in 0..3 {
+            if !near(dot(axis, axis), 1.0) {
+                let length = dot(axis, axis).sqrt();
+                return Err(format!("axis {axis} (from 0) has the length {length}, expected 1"));
+            }
+        }
+        for (a, b) in [(0, 1), (1, 2), (2, 0)] {
+            if !near(dot(a, b), 0.0) {
+                let angle = dot(a, b).clamp(-1.0, 1.0).acos().to_degrees();
+                return Err(format!(
+                    "axes {a} and {b} (from 0) make an angle of {angle} degrees, expected 90"
+                ));
+            }
+        }
+        let [x, y, z] = axes;
+        let cross = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]];
+        if cross.iter().zip(z).map(|(c, z)| c * z).sum::<f64>() < 0.0 {
+            return Err("the axes are left-handed; turn the last one round".to_owned());
+        }
+        Ok(Self(axes))
     }
 }
 

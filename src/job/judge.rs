@@ -10,6 +10,7 @@ use super::output::FileError;
 use crate::brep::{BodyId, BodyKind};
 use crate::mesh::{Mesh, Tolerances, off, stl, tessellate_bodies};
 use crate::model::Model;
+use crate::units::{Length, LengthUnit};
 use crate::validate::{Request, ValidateError, Validator, Verdict, ask_freecad, ask_openscad};
 
 impl From<ValidatorName> for Validator {
@@ -158,6 +159,28 @@ fn mesh_of(model: &Model, bodies: &[BodyId], chord: Option<f64>) -> Result<Mesh,
         let face = error.face().map(|face| format!("{}: ", super::select::describe(model, face)));
         PartError::Mesh(format!("{}{error}", face.unwrap_or_default()))
     })
+}
+
+/// Chords below this part of the diagonal are refused: a curved face would take millions of triangles, which
+/// nothing that reads a mesh is served by.
+const FINEST: f64 = 1e-7;
+
+/// The greatest distance of a mesh from its part, in file units; `key` is what the user calls the setting.
+///
+/// # Errors
+/// [`PartError::Setting`] when it does not fit the size of the part.
+pub fn chord(model: &Model, tolerance: Length, key: &'static str) -> Result<f64, PartError> {
+    let unit = model.contexts.first().map_or_else(LengthUnit::millimetre, |context| context.length.clone());
+    let (chord, size) = (tolerance.in_unit(&unit), diagonal(model));
+    if chord >= FINEST * size && chord <= size {
+        return Ok(chord);
+    }
+    let (least, name) = (FINEST * size, &unit.name);
+    let message = format!(
+        "{chord} {name} does not fit this part, whose diagonal is {size} {name}; \
+         expected a length from {least} to {size}"
+    );
+    Err(PartError::Setting { key, message })
 }
 
 /// Diagonal of the box of the vertices; 1 when they all coincide.

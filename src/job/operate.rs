@@ -104,7 +104,7 @@ fn scaling(settings: &ConstrainedScale, unit: &LengthUnit) -> Scaling {
         scaling.center = point_in(center, unit);
     }
     if let Some(axes) = &settings.axes {
-        scaling.axes = Matrix3::from_columns(&axes.map(Vector3::from));
+        scaling.axes = Matrix3::from_columns(&axes.0.map(Vector3::from));
     }
     scaling.continuity = match settings.continuity {
         file::Continuity::Position => Continuity::Position,

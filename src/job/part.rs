@@ -18,7 +18,8 @@ pub struct Read {
 }
 
 /// Codes of files that cannot be trusted to be whole: what is missing may be what the job is about.
-const DAMAGE: [&str; 3] = ["step.truncated", "step.not-exchange-structure", "step.compressed"];
+const DAMAGE: [&str; 4] =
+    ["step.truncated", "step.not-exchange-structure", "step.compressed", "step.not-finite"];
 
 impl Read {
     /// Reads a file from its place.
@@ -26,6 +27,9 @@ impl Read {
     /// # Errors
     /// [`PartError::Input`], [`PartError::Open`].
     pub fn file(path: &Path) -> Result<Self, PartError> {
+        if path.is_dir() {
+            return Err(PartError::Folder(path.to_owned()));
+        }
         let bytes = std::fs::read(path)
             .map_err(|source| PartError::Input(FileError { path: path.to_owned(), source }))?;
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
@@ -70,6 +74,20 @@ impl Read {
             fact.message,
             place.unwrap_or_default()
         ))
+    }
+
+    /// Reads what the file means only if a number beyond the finite ones may stand in it: in a file that is
+    /// passed through, nobody else would see it.
+    pub fn look_for_overflow(&mut self) {
+        if self.document.may_overflow() {
+            let _ = self.model();
+        }
+    }
+
+    /// The gravest fact is an error: part of the file is not understood.
+    #[must_use]
+    pub fn has_errors(&self) -> bool {
+        self.diagnostics.worst() == Some(Severity::Error)
     }
 
     /// What the file means.

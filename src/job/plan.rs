@@ -36,6 +36,12 @@ pub enum PlanError {
         /// The nearest name in the folder.
         nearest: Option<String>,
     },
+    /// An input is a folder.
+    #[error("input `{pattern}` is a folder; name the files in it, such as `{}*.step`", below(.pattern))]
+    Folder {
+        /// The input.
+        pattern: String,
+    },
     /// `output` names something in braces that is not known.
     #[error("output `{template}` has `{{{name}}}`; known are `{{dir}}`, `{{stem}}` and `{{ext}}`")]
     BadTemplate {
@@ -66,6 +72,10 @@ pub enum PlanError {
         /// The file.
         output: PathBuf,
     },
+}
+
+fn below(pattern: &str) -> String {
+    if pattern.ends_with('/') { pattern.to_owned() } else { format!("{pattern}/") }
 }
 
 fn near(nearest: &Option<String>) -> String {
@@ -129,6 +139,9 @@ fn matches(pattern: &str, folder: &Path) -> Result<Vec<PathBuf>, PlanError> {
     let plain = folder.join(pattern);
     if plain.is_file() {
         return Ok(vec![plain]);
+    }
+    if plain.is_dir() {
+        return Err(PlanError::Folder { pattern: pattern.to_owned() });
     }
     let bad = |e: globset::Error| PlanError::BadGlob { pattern: pattern.to_owned(), reason: e.to_string() };
     let first_special = pattern.find(['*', '?', '[', '{']).unwrap_or(pattern.len());

@@ -42,6 +42,10 @@ impl JobFileError {
 /// # Errors
 /// The first thing that is wrong, at its place.
 pub fn read(text: &str, syntax: Syntax) -> Result<Job, JobFileError> {
+    if text.trim().is_empty() {
+        let message = "the job file is empty; it needs at least `version`, `inputs` and `output`";
+        return Err(JobFileError::new(0..0, message));
+    }
     let node = match syntax {
         Syntax::Toml => toml_node(text)?,
         Syntax::Json => super::json::parse(text).map_err(|e| JobFileError::new(e.at..e.at + 1, e.message))?,

@@ -15,7 +15,6 @@ use super::own_check::{OwnFinding, new_findings, own_findings};
 use super::part::Read;
 use super::plan::Part;
 use super::report::{DiagnosticReport, PartReport, Report, Status, WritePath};
-use crate::brep::FaceId;
 use crate::document::Stamp;
 use crate::model::{ChangeSet, Model};
 
@@ -86,6 +85,9 @@ fn go(job: &Job, part: &Part, mode: Mode, stamp: &Stamp, report: &mut PartReport
     let bytes = changed.as_deref().unwrap_or_else(|| read.document.source().bytes());
     let needs_model = !job.operation.is_empty() || !job.also.is_empty() || !job.validate.with.is_empty();
     let after = if needs_model { Some(read_again(bytes, &part.output, &findings, report)?) } else { None };
+    if let Some(model) = &after {
+        chord(job, model)?;
+    }
     if mode == Mode::DryRun {
         return Ok(());
     }
@@ -122,13 +124,17 @@ fn changed_bytes(
     stamp: &Stamp,
     report: &mut PartReport,
 ) -> Result<Changed, PartError> {
-    read.refuse_damage()?;
     report.write_path = Some(WritePath::Verbatim);
     if job.operation.is_empty() {
+        read.look_for_overflow();
+        read.refuse_damage()?;
         return Ok(Changed::default());
     }
+    read.refuse_damage()?;
     let model = read.model();
     read.refuse_errors()?;
+    // A bound that does not fit is the job's fault: it is told before the work, not after.
+    chord(job, &model)?;
     report.before = Some(Figures::of(&model));
     let mut changes = ChangeSet::default();
     for operation in &job.operation {
@@ -193,9 +199,7 @@ fn side_files(
     if job.also.is_empty() {
         return Ok(Vec::new());
     }
-    let first = model.brep.faces.ids().next();
-    let unit = |face: FaceId| &model.context_of(face).length;
-    let chord = first.and_then(|face| job.tolerance.length.map(|length| length.0.in_unit(unit(face))));
+    let chord = chord(job, model)?;
     let mesh = judge::whole_mesh(model, chord)?;
     let mut staged = Vec::new();
     for &format in &job.also {
@@ -204,6 +208,12 @@ fn side_files(
         report.side_files.push(path.to_string_lossy().into_owned());
     }
     Ok(staged)
+}
+
+/// The job's bound on its side meshes.
+fn chord(job: &Job, model: &Model) -> Result<Option<f64>, PartError> {
+    let wanted = job.tolerance.length.filter(|_| !job.also.is_empty());
+    wanted.map(|length| judge::chord(model, length.0, "tolerance.length")).transpose()
 }
 
 fn stale_property(entity: &str) -> DiagnosticReport {

@@ -50,6 +50,10 @@ pub enum SurfaceKind {
     LinearExtrusion,
     Revolution,
     BSpline,
+    Offset,
+    RectangularTrimmed,
+    CurveBounded,
+    RectangularComposite,
 }
 
 impl SurfaceKind {
@@ -65,6 +69,10 @@ impl SurfaceKind {
             Self::LinearExtrusion => "linear_extrusion",
             Self::Revolution => "revolution",
             Self::BSpline => "b_spline",
+            Self::Offset => "offset",
+            Self::RectangularTrimmed => "rectangular_trimmed",
+            Self::CurveBounded => "curve_bounded",
+            Self::RectangularComposite => "rectangular_composite",
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Affine maps of space, and the small rotations that frames are carried by.
 
-use super::{Matrix3, Point3, Vector3};
+use super::{Frame, Matrix3, Point3, Vector3};
 
 /// `x ↦ linear · x + translation`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,6 +28,18 @@ impl Affine {
     #[must_use]
     pub fn about(center: &Point3<f64>, linear: Matrix3<f64>) -> Self {
         Self { linear, translation: center.coords - linear * center.coords }
+    }
+
+    /// The map that multiplies every coordinate by one factor.
+    #[must_use]
+    pub fn scale(factor: f64) -> Self {
+        Self { linear: Matrix3::identity() * factor, translation: Vector3::zeros() }
+    }
+
+    /// From coordinates in a frame to coordinates in the space that the frame is given in.
+    #[must_use]
+    pub fn from_frame(frame: &Frame) -> Self {
+        Self { linear: Matrix3::from_columns(&[frame.x, frame.y, frame.z]), translation: frame.origin.coords }
     }
 
     /// A shift.

@@ -7,10 +7,12 @@ pub mod banded;
 pub mod bounds;
 pub mod frame;
 pub mod quadrature;
+pub mod rigid_fit;
 pub mod sparse;
 
 pub use affine::{Affine, cofactor, minimal_rotation};
 pub use bounds::BoundingBox;
 pub use frame::Frame;
 pub use nalgebra::{Matrix2, Matrix3, Point2, Point3, Vector2, Vector3, Vector4};
+pub use rigid_fit::rigid_fit;
 pub use sprs::{CsMat, TriMat, kronecker_product};

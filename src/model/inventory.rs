@@ -43,7 +43,7 @@ pub struct Inventory {
     /// Used edges and free curves that are only carried, by entity name.
     pub unread_curves: BTreeMap<String, usize>,
     /// Least and greatest coordinates of the used vertices, in file units. Curved edges and faces may reach
-    /// further. `None` without vertices, or when contexts of different length units meet.
+    /// further. `None` without vertices, or when bodies of different length units meet.
     pub vertex_extents: Option<[Point3<f64>; 2]>,
 }
 
@@ -103,8 +103,9 @@ impl Inventory {
     fn measure(&mut self, model: &Model) {
         let vertices = used_vertices(model);
         self.vertices = vertices.len();
-        let unit = |context: &Context| context.length.metres.to_bits();
-        if self.contexts.windows(2).any(|pair| unit(&pair[0]) != unit(&pair[1])) {
+        let unit = |body: &usize| model.contexts[*body].length.metres.to_bits();
+        let units: BTreeSet<u64> = model.body_context.iter().map(|(_, context)| unit(context)).collect();
+        if units.len() > 1 {
             return;
         }
         for vertex in vertices {

@@ -4,10 +4,16 @@
 //! The model is read-only and in file units. Operations return a [`ChangeSet`]; nothing writes a model
 //! back.
 
+pub mod annotation;
+pub mod assembly;
 pub mod change_set;
 pub mod inventory;
 pub mod origin;
 
+pub use annotation::{Annotation, AnnotationKind, Element, Measure};
+pub use assembly::{
+    Instances, Node, Occurrence, Override, OverrideTarget, PlacedBody, PlacedShape, Product, instance_counts,
+};
 pub use change_set::ChangeSet;
 pub use inventory::Inventory;
 pub use origin::{Origin, Origins};
@@ -26,9 +32,9 @@ pub struct Model {
     pub contexts: Vec<Context>,
     /// Context of each body: an index into `contexts`.
     pub body_context: Arena<BodyId, usize>,
-    /// Names, colours and layers of the faces.
+    /// Names, looks and layers of the faces.
     pub faces: Arena<FaceId, Attributes>,
-    /// Names, colours and layers of the bodies; a body's colour is inherited by faces without one.
+    /// Names, looks and layers of the bodies; a body's colour is inherited by faces without one.
     pub bodies: Arena<BodyId, BodyAttributes>,
     /// Curves that belong to no edge: wires and geometric sets.
     pub free_curves: Vec<CurveId>,
@@ -36,6 +42,8 @@ pub struct Model {
     pub products: Vec<Product>,
     /// Uses of one product in another, in file order.
     pub occurrences: Vec<Occurrence>,
+    /// Dimensions, tolerances, datums, notes, validation properties and tessellations, in file order.
+    pub annotations: Vec<Annotation>,
     /// Which record each element came from.
     pub origins: Origins,
 }
@@ -62,13 +70,24 @@ pub struct Colour {
     pub blue: f64,
 }
 
+/// How a file wants something shown.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Appearance {
+    /// Colour of its surfaces.
+    pub colour: Option<Colour>,
+    /// How much of what is behind shows through: 0 opaque, 1 clear.
+    pub transparency: Option<f64>,
+    /// Whether the file hides it.
+    pub hidden: bool,
+}
+
 /// What a file says about a face beside its shape.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Attributes {
     /// Decoded name; empty when the file gives none.
     pub name: String,
-    /// Own colour, not an inherited one.
-    pub colour: Option<Colour>,
+    /// Own look, not an inherited one.
+    pub appearance: Appearance,
     /// Names of the layers that it lies on.
     pub layers: Vec<String>,
 }
@@ -76,32 +95,10 @@ pub struct Attributes {
 /// What a file says about a body beside its shape.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct BodyAttributes {
-    /// Name, colour, layers.
+    /// Name, look, layers.
     pub own: Attributes,
     /// Product that it is a shape of: an index into [`Model::products`].
     pub product: Option<usize>,
-}
-
-/// A product definition.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Product {
-    /// Decoded `PRODUCT.id`.
-    pub id: String,
-    /// Decoded `PRODUCT.name`.
-    pub name: String,
-    /// The product definition's record.
-    pub origin: Origin,
-}
-
-/// The use of one product in another.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Occurrence {
-    /// Index of the assembly into [`Model::products`].
-    pub parent: usize,
-    /// Index of the component into [`Model::products`].
-    pub child: usize,
-    /// Decoded name of the usage.
-    pub name: String,
 }
 
 impl Model {
@@ -123,10 +120,29 @@ impl Model {
         self.bodies[self.body_of(face)].product.map(|at| &self.products[at])
     }
 
-    /// Colour of a face: its own, or else its body's.
+    /// Colour of a face: its own, or else its body's, or else that of its product's whole shape. What a use
+    /// in an assembly changes is [`Instances::colour`]'s knowledge.
     #[must_use]
     pub fn colour_of(&self, face: FaceId) -> Option<Colour> {
-        self.faces[face].colour.or(self.bodies[self.body_of(face)].own.colour)
+        let of_product = || self.product_of(face).and_then(|product| product.appearance.colour);
+        let body = &self.bodies[self.body_of(face)].own;
+        self.faces[face].appearance.colour.or(body.appearance.colour).or_else(of_product)
+    }
+
+    /// Transparency of a face: its own or else its body's; 0 when the file says none.
+    #[must_use]
+    pub fn transparency_of(&self, face: FaceId) -> f64 {
+        let body = &self.bodies[self.body_of(face)].own.appearance;
+        let own = &self.faces[face].appearance;
+        // A colour of its own without a transparency is opaque, whatever the body is.
+        let inherited = if own.colour.is_some() { None } else { body.transparency };
+        own.transparency.or(inherited).unwrap_or(0.0)
+    }
+
+    /// Whether the file hides a face or its body.
+    #[must_use]
+    pub fn is_hidden(&self, face: FaceId) -> bool {
+        self.faces[face].appearance.hidden || self.bodies[self.body_of(face)].own.appearance.hidden
     }
 
     /// Layers of a face: its own, then those of its body.

@@ -72,7 +72,7 @@ pub enum OperationError {
     },
     /// A held loop lost its shape. This is our bug, caught before anything is written.
     #[error(
-        "internal error: loop {held} of face {face} deviates from its rigid copy by {deviation:.3e} of its size"
+        "internal error: loop {held} of face {face} deviates from the motion imposed on it by {deviation:.3e} of its size"
     )]
     RigidityLost {
         /// The face.

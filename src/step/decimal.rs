@@ -6,7 +6,7 @@
 //!
 //! INVARIANT: a value that is given is the nearest one, ties to even: the same bits as the standard library's.
 
-use super::syntax::{DIGIT_ZEROS, leading_digits, word_at};
+use super::syntax::digits_at;
 
 /// Decimal digits that 64 bits always hold.
 const MAX_DIGITS: usize = 19;
@@ -54,35 +54,6 @@ pub(super) fn real_at(bytes: &[u8], at: usize) -> Option<(f64, usize)> {
 fn leading_zeros(text: &[u8]) -> usize {
     let front = text.iter().take_while(|byte| matches!(byte, b'0' | b'.'));
     front.filter(|&&byte| byte == b'0').count()
-}
-
-/// Appends the digits at `at` to a number, which wraps around beyond [`MAX_DIGITS`]; gives their end.
-#[inline]
-fn digits_at(bytes: &[u8], mut at: usize, number: &mut u64) -> usize {
-    const SCALE: [u64; 9] = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000];
-    loop {
-        let word = word_at(bytes, at);
-        let found = leading_digits(word);
-        if found == 0 {
-            return at;
-        }
-        // What is no digit is shifted out, and zeros come in before the first digit.
-        let digits = (word ^ DIGIT_ZEROS) << (64 - 8 * found);
-        *number = number.wrapping_mul(SCALE[found]).wrapping_add(eight_digits(digits));
-        at += found;
-        if found < 8 {
-            return at;
-        }
-    }
-}
-
-/// The number of eight digits 0 to 9, the first in the lowest byte: neighbours are joined
-/// three times, the left one times its power of ten moved onto the right one.
-#[inline]
-fn eight_digits(digits: u64) -> u64 {
-    let pairs = digits.wrapping_mul(1 + (10 << 8)) >> 8;
-    let fours = (pairs & 0x00ff_00ff_00ff_00ff).wrapping_mul(1 + (100 << 16)) >> 16;
-    (fours & 0x0000_ffff_0000_ffff).wrapping_mul(1 + (10_000 << 32)) >> 32
 }
 
 fn exponent_at(bytes: &[u8], at: usize) -> Option<(i32, usize)> {

@@ -224,7 +224,7 @@ impl<'a> Instance<'a> {
     /// Offset of what stands behind `=`, a scope included; `None` for a damaged head.
     #[inline]
     pub(super) fn body_start(&self) -> Option<usize> {
-        index::record_head(self.bytes(), self.record_span().start as usize).map(|head| head.body)
+        index::body_start(self.bytes(), self.record_span().start as usize)
     }
 
     /// Whether the parentheses close just before the semicolon.

@@ -63,24 +63,32 @@ pub(super) fn build(bytes: &[u8], sink: &mut dyn Sink) -> Index {
 }
 
 /// How a record begins.
-pub(super) struct Head {
+struct Head {
     /// `None` when it exceeds 64 bits.
     name: Option<u64>,
     /// First byte behind `=` and white space.
-    pub(super) body: usize,
+    body: usize,
 }
 
 /// Reads `#12 =` at `at`; `None` when something else stands there.
-pub(super) fn record_head(bytes: &[u8], at: usize) -> Option<Head> {
+fn record_head(bytes: &[u8], at: usize) -> Option<Head> {
     let (name, end) = syntax::number_at(bytes, at + 1);
-    if end == at + 1 {
-        return None;
-    }
-    let equals = if bytes.get(end) == Some(&b'=') { end } else { syntax::trivia_end(bytes, end) };
-    if bytes.get(equals) != Some(&b'=') {
-        return None;
-    }
-    Some(Head { name, body: syntax::trivia_end(bytes, equals + 1) })
+    let body = behind_equals(bytes, end).filter(|_| end > at + 1)?;
+    Some(Head { name, body })
+}
+
+/// First byte behind the `#12 =` at `at` and white space; `None` when something else stands there.
+#[inline]
+pub(super) fn body_start(bytes: &[u8], at: usize) -> Option<usize> {
+    let end = syntax::digits_end(bytes, at + 1);
+    behind_equals(bytes, end).filter(|_| end > at + 1)
+}
+
+/// Behind the equals sign at or behind `at`, and white space.
+#[inline]
+fn behind_equals(bytes: &[u8], at: usize) -> Option<usize> {
+    let equals = syntax::trivia_end(bytes, at);
+    (bytes.get(equals) == Some(&b'=')).then(|| syntax::trivia_end(bytes, equals + 1))
 }
 
 /// Whether `#12 =` stands at `at`. Comments are not looked for, so that searching with this takes linear time

@@ -101,7 +101,7 @@ pub fn classify(keyword: &[u8]) -> Option<Entity> {
 }
 
 /// Slots of the hash table: a power of two, four times the names or more.
-const SLOTS: usize = 1024;
+const SLOTS: usize = 2048;
 
 /// Slot where the search for a keyword begins: the length, and a few bytes whose case is put aside.
 fn bucket(keyword: &[u8]) -> usize {
@@ -111,7 +111,7 @@ fn bucket(keyword: &[u8]) -> usize {
     for index in [0, 2, n / 3, n / 2, n.saturating_sub(6), n.saturating_sub(2)] {
         hash = hash.wrapping_mul(31).wrapping_add(at(index));
     }
-    (hash.wrapping_mul(0x9E37_79B1) >> 22) as usize % SLOTS
+    (hash.wrapping_mul(0x9E37_79B1) >> 21) as usize % SLOTS
 }
 
 struct Table {

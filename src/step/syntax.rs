@@ -232,12 +232,8 @@ fn string_end_slow(bytes: &[u8], at: usize) -> Option<usize> {
 pub(crate) fn number_at(bytes: &[u8], at: usize) -> (Option<u64>, usize) {
     /// Digits that always fit.
     const SAFE_DIGITS: usize = 19;
-    let mut end = at;
-    let mut value = 0_u64;
-    while let Some(digit @ b'0'..=b'9') = bytes.get(end) {
-        value = value.wrapping_mul(10).wrapping_add(u64::from(digit - b'0'));
-        end += 1;
-    }
+    let mut value = 0;
+    let end = digits_at(bytes, at, &mut value);
     match end - at {
         0 => (None, end),
         1..=SAFE_DIGITS => (Some(value), end),
@@ -320,11 +316,42 @@ fn last_word(bytes: &[u8], at: usize) -> u64 {
 pub(crate) fn digits_end(bytes: &[u8], mut at: usize) -> usize {
     loop {
         let found = leading_digits(word_at(bytes, at));
-        at += found;
         if found < 8 {
+            return at + found;
+        }
+        // Not by `found`: the next word can be looked at before this one is counted.
+        at += 8;
+    }
+}
+
+/// Appends the digits from `at` on to a number, which wraps around beyond 64 bits; gives their end.
+#[inline]
+pub(super) fn digits_at(bytes: &[u8], mut at: usize, number: &mut u64) -> usize {
+    const SCALE: [u64; 8] = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000];
+    loop {
+        let word = word_at(bytes, at);
+        let found = leading_digits(word);
+        if found == 0 {
             return at;
         }
+        if found < 8 {
+            // What is no digit is shifted out, and zeros come in before the first digit.
+            let digits = (word ^ DIGIT_ZEROS) << (64 - 8 * found);
+            *number = number.wrapping_mul(SCALE[found]).wrapping_add(eight_digits(digits));
+            return at + found;
+        }
+        *number = number.wrapping_mul(100_000_000).wrapping_add(eight_digits(word ^ DIGIT_ZEROS));
+        at += 8;
     }
+}
+
+/// The number of eight digits 0 to 9, the first in the lowest byte: neighbours are joined
+/// three times, the left one times its power of ten moved onto the right one.
+#[inline]
+fn eight_digits(digits: u64) -> u64 {
+    let pairs = digits.wrapping_mul(1 + (10 << 8)) >> 8;
+    let fours = (pairs & 0x00ff_00ff_00ff_00ff).wrapping_mul(1 + (100 << 16)) >> 16;
+    (fours & 0x0000_ffff_0000_ffff).wrapping_mul(1 + (10_000 << 32)) >> 32
 }
 
 #[inline]

@@ -31,6 +31,9 @@ pub struct AttributeError {
     pub expected: &'static str,
 }
 
+/// What [`AttributeError::found`] says of a real whose value is not finite.
+pub const OUT_OF_RANGE: &str = "a real out of range";
+
 impl<'a> EntityView<'a> {
     /// The view of an instance, unless its type is unknown.
     ///
@@ -228,12 +231,12 @@ pub fn list<'a>(
 }
 
 fn wrong(field: Option<Parameter<'_>>, attribute: &'static str, expected: &'static str) -> AttributeError {
-    let found = match field.map(|parameter| parameter.kind()) {
+    let found = match field.map(|field| field.untyped().kind()) {
         None => "missing",
         Some(ParameterKind::Omitted) => "`$`",
         Some(ParameterKind::Derived) => "`*`",
         Some(ParameterKind::Integer) => "an integer",
-        Some(ParameterKind::Real) => "a real out of range",
+        Some(ParameterKind::Real) => OUT_OF_RANGE,
         Some(ParameterKind::String) => "a string",
         Some(ParameterKind::Enumeration) => "an enumeration value",
         Some(ParameterKind::Binary) => "a binary value",

@@ -112,3 +112,88 @@ fn the_same_job_gives_the_same_bytes_and_changes_only_its_records() {
         assert_eq!(lines(input), lines(&first), "{word}");
     }
 }
+
+/// The door's job with a key, which must be refused with exit code 2 and these words, key and line.
+fn says(operation: &str, words: &[&str]) {
+    let said = refused(&format!("factors = [1, 2, 3]\n{operation}"));
+    assert!(said.starts_with("exit code: 2\n"), "{operation}: {said}");
+    for word in words.iter().chain(&["job.toml:"]) {
+        assert!(said.contains(word), "{operation}: {word} is not in {said}");
+    }
+}
+
+#[test]
+fn axes_that_are_none_are_refused_by_key() {
+    says(
+        "axes = [[1, 0, 0], [0, 2, 0], [0, 0, 1]]",
+        &["operation[0].axes", "axis 1 (from 0) has the length 2"],
+    );
+    says("axes = [[1, 0, 0], [0.6, 0.8, 0], [0, 0, 1]]", &["operation[0].axes", "axes 0 and 1", "53.13"]);
+    says("axes = [[0, 1, 0], [1, 0, 0], [0, 0, 1]]", &["operation[0].axes", "left-handed"]);
+    says("axes = [[nan, 0, 0], [0, 1, 0], [0, 0, 1]]", &["operation[0].axes", "axis 0"]);
+    says("axes = []", &["operation[0].axes"]);
+}
+
+#[test]
+fn lengths_and_factors_that_are_none_are_refused_by_key() {
+    for (key, value) in [("factors", "[0, 1, 1]"), ("factors", "[1, inf, 1]"), ("center", "[nan, 0, 0]")] {
+        let said = refused(&format!("factors = [1, 1, 1]\n{key} = {value}").replacen(
+            if key == "factors" { "factors = [1, 1, 1]\n" } else { "\n\n" },
+            "",
+            1,
+        ));
+        assert!(
+            said.starts_with("exit code: 2\n") && said.contains(&format!("operation[0].{key}")),
+            "{said}"
+        );
+    }
+    for value in ["0", "-1", "\"-1 mm\"", "inf", "\"nan mm\"", "\"1e400 mm\""] {
+        let job = format!("{}\n[tolerance]\nlength = {value}\n", door_job("factors = [1, 1, 1]"));
+        let fixture = Fixture::new().sample("door/door.step").file("job.toml", job);
+        let said = fixture.run(&["run", "job.toml"]);
+        assert!(said.starts_with("exit code: 2\n") && said.contains("tolerance.length"), "{value}: {said}");
+        assert_eq!(fixture.left(), ["door.step", "job.toml"]);
+    }
+}
+
+#[test]
+fn a_mesh_tolerance_that_does_not_fit_the_part_is_the_jobs_fault() {
+    // A tolerance a billion times smaller than the part would fill any memory; one larger than it means nothing.
+    for value in ["\"1e-9 mm\"", "1e-300", "\"10 m\"", "1e300"] {
+        let job =
+            format!("also = [\"stl\"]\n{}\n[tolerance]\nlength = {value}\n", door_job("factors = [1, 1, 1]"));
+        let fixture = Fixture::new().sample("door/door.step").file("job.toml", job);
+        let said = fixture.run(&["run", "job.toml"]);
+        assert!(said.starts_with("exit code: 2\n") && said.contains("`tolerance.length`"), "{value}: {said}");
+        assert!(said.contains("expected a length from"), "{said}");
+        assert_eq!(fixture.left(), ["door.step", "job.toml"]);
+        let value = value.trim_matches('"');
+        let said = fixture.run(&["convert", "door.step", "-o", "door.stl", "--tolerance", value]);
+        assert!(said.starts_with("exit code: 2\n") && said.contains("`--tolerance`"), "{value}: {said}");
+    }
+}
+
+#[test]
+fn job_files_that_are_none_say_what_they_must_be() {
+    let fixture = Fixture::new()
+        .sample("door/door.step")
+        .file("list.json", "[]")
+        .file("number.json", "3")
+        .file("blank.json", " \n")
+        .file("blank.toml", "")
+        .file("folder.d/x", "")
+        .file("deep.toml", "version = 1\ninputs = [\"folder.d\"]\noutput = \"o.step\"\n");
+    let cases = [
+        ("list.json", "expected a table with keys of `version`, `name`, `inputs`"),
+        ("list.json", "found a list"),
+        ("number.json", "found a number"),
+        ("blank.json", "the job file is empty; it needs at least `version`"),
+        ("blank.toml", "the job file is empty; it needs at least `version`"),
+        ("folder.d", "job file folder.d is a folder"),
+        ("deep.toml", "input `folder.d` is a folder; name the files in it, such as `folder.d/*.step`"),
+    ];
+    for (job, words) in cases {
+        let said = fixture.run(&["run", job]);
+        assert!(said.starts_with("exit code: 2\n") && said.contains(words), "{job}: {said}");
+    }
+}

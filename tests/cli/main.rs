@@ -2,7 +2,12 @@
 
 mod accepted;
 mod jobs;
+mod locality;
 mod parts;
+mod patho;
+#[path = "../support/mod.rs"]
+#[allow(dead_code, reason = "shared with other test binaries")]
+mod support;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -87,3 +87,63 @@ fn usage_errors_end_with_2() {
     let said = Fixture::new().run(&["convert"]);
     assert!(said.starts_with("exit code: 2\n"), "{said}");
 }
+
+#[test]
+fn inputs_that_are_no_files_say_what_to_do() {
+    let fixture = Fixture::new().file("parts/empty.step", "");
+    for command in [&["inspect", "parts"][..], &["check", "parts"], &["convert", "parts", "-o", "o.step"]] {
+        let said = fixture.run(command);
+        assert!(said.starts_with("exit code: 3\n"), "{said}");
+        assert!(
+            said.contains("the input is a folder; name the files in it, such as `parts/*.step`"),
+            "{said}"
+        );
+    }
+    let said = fixture.run(&["check", "parts/empty.step"]);
+    assert!(said.starts_with("exit code: 3\n") && said.contains("the file is empty; export"), "{said}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_input_that_may_not_be_read_ends_with_7_and_says_so() {
+    // No permission holds an administrator back from ordinary files: a file of the system that has none to read.
+    let unreadable = "/proc/self/mem";
+    let said = Fixture::new().run(&["inspect", unreadable]);
+    assert!(said.starts_with("exit code: 7\n"), "{said}");
+    assert!(said.contains("the input cannot be read") && said.contains("os error"), "{said}");
+}
+
+#[test]
+fn a_negative_multiplicity_is_told_by_record_and_direction() {
+    let sample = include_str!("../../samples/door/door.step");
+    let broken = sample.replacen("(4,1,1,1,1,1,4)", "(4,1,-1,1,1,1,4)", 1);
+    assert_ne!(sample, broken);
+    let fixture = Fixture::new().file("door.step", broken);
+    let said = fixture.run(&["inspect", "door.step"]);
+    assert!(said.starts_with("exit code: 1\n"), "{said}");
+    assert!(said.contains("multiplicity 2 (from 0) in u is -1, expected an integer of at least 1"), "{said}");
+    assert!(said.contains("door.step:") && said.contains("error[step.bad-geometry]: #"), "{said}");
+}
+
+#[test]
+fn a_face_of_two_shells_is_told_by_record_and_line() {
+    let sample = include_str!("../../samples/door/door.step");
+    let listed = |text: &str| text.replacen("(#823)", "(#823,#823)", 1);
+    let two = "#824=OPEN_SHELL('',(#823));\n#90001=OPEN_SHELL('',(#823));";
+    let shared = sample.replacen("#824=OPEN_SHELL('',(#823));", two, 1).replacen(
+        "'door',(#824)",
+        "'door',(#824,#90001)",
+        1,
+    );
+    assert_ne!(sample, listed(sample));
+    assert_ne!(sample, shared);
+    let job = super::door_job("factors = [1.1, 1.2, 1.25]\nhold = [{ loops = \"inner\" }]");
+    let run = |text: String| {
+        Fixture::new().file("door.step", text).file("job.toml", &job).run(&["run", "job.toml"])
+    };
+    let said = run(listed(sample));
+    assert!(said.starts_with("exit code: 0\n") && said.contains("[step.repeated-face]"), "{said}");
+    let said = run(shared);
+    assert!(said.starts_with("exit code: 4\n"), "{said}");
+    assert!(said.contains("(line ") && said.contains("would be changed twice"), "{said}");
+}

@@ -125,3 +125,28 @@ fn a_real_hood_face_alone_is_refused_with_its_neighbours() {
     let expected = ["#1603", "#1610", "#1619", "#1621", "#1623", "#1625", "#1627", "#1628", "#1629", "#1630"];
     assert_eq!(neighbours, expected);
 }
+
+#[test]
+fn a_loop_held_along_some_axes_is_not_called_rigid() {
+    let model = sample("door/door.step");
+    let rigidity = |mode: Hold, factors: [f64; 3]| {
+        let params = Params {
+            scaling: Scaling::new(factors),
+            scope: Scope::Part,
+            hold: vec![HoldTarget::InnerLoops],
+            mode,
+        };
+        let measures = plan(&model, &params).unwrap().measures;
+        let loops = measures.groups.iter().flat_map(|group| group.loops.clone());
+        loops.map(|l| (l.motion_deviation, l.rigid_deviation)).collect::<Vec<_>>()
+    };
+    for (motion, rigid) in rigidity(Hold::Pinned(None), [1.1, 1.0, 1.0]) {
+        assert!(motion <= 1e-12 && rigid <= 1e-12, "{motion:.3e} {rigid:.3e}");
+    }
+    // A stretch by a tenth along x moves the ends of a loop of width w by 0.05 w against its middle, and turning the
+    // loop gains little of it back; the holes are wider along x than half of their extent.
+    for (motion, rigid) in rigidity(Hold::Axes([false, true, true]), [1.1, 1.0, 1.0]) {
+        assert!(motion <= 1e-12, "{motion:.3e}");
+        assert!((0.02..=0.06).contains(&rigid), "{rigid:.3e}");
+    }
+}

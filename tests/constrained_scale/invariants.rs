@@ -2,7 +2,7 @@
 
 use resurf::geometry::nurbs::NurbsSurface;
 use resurf::math::{Affine, Matrix3, Point3, Vector3};
-use resurf::ops::constrained_scale::measures::rigid_deviation;
+use resurf::ops::constrained_scale::measures::motion_deviation;
 use resurf::ops::constrained_scale::{Continuity, HeldLoop, Hold, Scaled, Scaling, scale_face};
 
 use super::parts::{contour, distance, ellipse, grid, held, hole, points, small, small_point, weighted_part};
@@ -42,7 +42,7 @@ fn b1_held_loops_are_rigid_in_every_mode() {
         let scaled = scale(&surface, &loops, &Scaling::new(GROW));
         let motion = &scaled.groups[0].motion;
         let off =
-            rigid_deviation(&surface, &scaled.faces[0].surface, &loops[0].contour.points, motion).relative;
+            motion_deviation(&surface, &scaled.faces[0].surface, &loops[0].contour.points, motion).relative;
         assert!(off <= 1e-12, "{hold:?}: {off:.3e}");
         assert_eq!(motion.is_rigid(), !matches!(hold, Hold::Axes(_)));
     }
@@ -230,7 +230,7 @@ fn near_holes_are_merged_into_one_motion() {
     let motion = &scaled.groups[0].motion;
     for held in &loops {
         let points = &held.contour.points;
-        assert!(rigid_deviation(&small(), &scaled.faces[0].surface, points, motion).relative <= 1e-12);
+        assert!(motion_deviation(&small(), &scaled.faces[0].surface, points, motion).relative <= 1e-12);
     }
 }
 
@@ -270,5 +270,5 @@ fn uneven_knots_get_room_where_bisection_of_all_spans_would_not_fit() {
     let face = &scaled.faces[0];
     assert!(face.surface.net().len() <= 5000);
     let held = &loops[0].contour.points;
-    assert!(rigid_deviation(&surface, &face.surface, held, &scaled.groups[0].motion).relative <= 1e-12);
+    assert!(motion_deviation(&surface, &face.surface, held, &scaled.groups[0].motion).relative <= 1e-12);
 }

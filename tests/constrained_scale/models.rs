@@ -196,6 +196,7 @@ pub fn model(brep: Brep) -> Model {
         free_curves: Vec::new(),
         products: Vec::new(),
         occurrences: Vec::new(),
+        annotations: Vec::new(),
         origins,
         brep,
     }

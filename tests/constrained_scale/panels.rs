@@ -1,7 +1,7 @@
 //! Deviation and curvature figures of three car panels, as the specification gives them in section 7.2.
 
 use resurf::geometry::nurbs::NurbsSurface;
-use resurf::ops::constrained_scale::measures::{Quality, quality, rigid_deviation};
+use resurf::ops::constrained_scale::measures::{Quality, motion_deviation, quality};
 use resurf::ops::constrained_scale::{HeldLoop, Scaling, scale_face};
 
 use super::parts::{door, free, hood, published, trunk};
@@ -34,7 +34,7 @@ fn check((surface, loops): (NurbsSurface, Vec<HeldLoop>), scaling: &Scaling, exp
     for group in &scaled.groups {
         for &(_, k) in &group.loops {
             let rigid =
-                rigid_deviation(&surface, &face.surface, &loops[k].contour.points, &group.motion).relative;
+                motion_deviation(&surface, &face.surface, &loops[k].contour.points, &group.motion).relative;
             assert!(rigid <= 1e-12, "loop {k} deviates by {rigid:.3e}");
         }
     }

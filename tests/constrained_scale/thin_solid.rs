@@ -1,7 +1,7 @@
 //! Two skins and one motion: the coupled solve of a hole through a thin panel.
 
 use resurf::geometry::nurbs::NurbsSurface;
-use resurf::ops::constrained_scale::measures::rigid_deviation;
+use resurf::ops::constrained_scale::measures::motion_deviation;
 use resurf::ops::constrained_scale::{FaceTask, HeldLoop, Scaled, Scaling, scale_face, scale_faces};
 
 use super::parts::{hole, part, small, small_point};
@@ -38,7 +38,8 @@ fn both_ends_of_a_hole_move_by_one_motion() {
         let u = [0.3, 0.7][k];
         for (face, surface, u) in [(0, small(), u), (1, below(), 1.0 - u)] {
             let points = hole(k, [u, 0.5], [0.06, 0.08], 0.0).contour.points;
-            let off = rigid_deviation(&surface, &scaled.faces[face].surface, &points, &group.motion).relative;
+            let off =
+                motion_deviation(&surface, &scaled.faces[face].surface, &points, &group.motion).relative;
             assert!(off <= 1e-12, "{off:.3e}");
         }
     }

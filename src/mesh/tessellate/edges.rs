@@ -1,7 +1,7 @@
 //! Edges divided once, for all faces that use them.
 
 use super::{TessellateError, Tolerances};
-use crate::brep::{Brep, EdgeId, EdgePoint, EdgeRange, edge_range};
+use crate::brep::{Brep, EdgeId, EdgePoint, EdgeRange, edge_range, inner_breaks};
 use crate::geometry::Curve;
 use crate::math::Point3;
 
@@ -53,15 +53,10 @@ pub(super) fn divide(
 /// Ends of the pieces that are divided on their own: knots, where the curve may bend suddenly, and the
 /// least count of them; the last is `to`.
 fn breaks(curve: &Curve, [from, to]: [f64; 2], closed: bool) -> Vec<f64> {
-    let mut breaks = Vec::new();
-    if let Curve::Nurbs(nurbs) = curve {
-        let (knots, _) = nurbs.knots().distinct();
-        let (start, end) = curve.domain();
-        // A closed curve may be passed from any parameter: the knots of the turns before and after, too.
-        let turns = if curve.period().is_some() { vec![start - end, 0.0, end - start] } else { vec![0.0] };
-        let shifted = turns.iter().flat_map(|turn| knots.iter().map(move |knot| knot + turn));
-        breaks.extend(shifted.filter(|t| (t - from) * (t - to) < 0.0));
-    }
+    let mut breaks = match curve {
+        Curve::Circle { .. } | Curve::Ellipse { .. } => Vec::new(),
+        _ => inner_breaks(curve, from.min(to), from.max(to)),
+    };
     let pieces = match curve {
         Curve::Line { .. } => 1,
         _ if closed => CLOSED_PIECES,

@@ -1,13 +1,13 @@
 //! How good a scaled face is: distance, normals and curvature against the closest points of the plainly scaled
 //! surface, and how exactly held loops kept their shape.
 //!
-//! Figures for the report; no decision hangs on them but that of [`rigid_deviation`].
+//! Figures for the report; no decision hangs on them but that of [`motion_deviation`].
 
 use super::motion::Motion;
 use super::sampling::{closest, steps};
 use super::task::ScaledFace;
 use crate::geometry::nurbs::NurbsSurface;
-use crate::math::{Point3, Vector3};
+use crate::math::{Point3, Vector3, rigid_fit};
 
 /// Comparison of a face with the plainly scaled surface outside the held cells, sampled on a grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,43 +59,56 @@ pub fn quality(face: &ScaledFace, samples: usize) -> Quality {
     sums.quality()
 }
 
-/// How far a held loop is from its rigid copy.
+/// How far a held loop is from where its group's motion takes it, and from being a rigid copy of itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RigidDeviation {
-    /// Greatest deviation of a coordinate, as a part of the loop's extent.
+pub struct MotionDeviation {
+    /// Greatest deviation of a coordinate from the rigid copy that fits best, as a part of the loop's extent. A
+    /// motion that stretches, as one that holds only some axes, leaves its stretch here.
+    pub rigid: f64,
+    /// Greatest deviation of a coordinate from the imposed motion, as a part of the loop's extent.
     pub relative: f64,
     /// The part of it that rounding of the coordinates themselves explains: it matters for a small loop far from
     /// the origin.
     pub rounding: f64,
 }
 
-/// Deviation of a held loop from its rigid copy.
+/// Deviation of a held loop from the imposed motion, and from a rigid copy.
 ///
 /// `before` and `after` are the surfaces, `points` the loop's polygon, which is sampled eight times finer.
 #[must_use]
-pub fn rigid_deviation(
+pub fn motion_deviation(
     before: &NurbsSurface,
     after: &NurbsSurface,
     points: &[[f64; 2]],
     motion: &Motion,
-) -> RigidDeviation {
+) -> MotionDeviation {
     let (mut worst, mut magnitude) = (0.0_f64, 0.0_f64);
     let mut low = Vector3::repeat(f64::INFINITY);
     let mut high = -low;
+    let mut pairs = Vec::with_capacity(points.len() * FINER);
     for (a, b) in points.iter().zip(points.iter().cycle().skip(1)) {
         for k in 0..FINER {
             let t = k as f64 / FINER as f64;
             let (u, v) = (a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]));
             let start = before.point(u, v);
             let expected = motion.apply(&start);
-            worst = worst.max((after.point(u, v) - expected).amax());
+            let found = after.point(u, v);
+            worst = worst.max((found - expected).amax());
+            pairs.push((start, found));
             magnitude = magnitude.max(start.coords.amax()).max(expected.coords.amax());
             low = low.inf(&start.coords);
             high = high.sup(&start.coords);
         }
     }
     let extent = (high - low).max();
-    RigidDeviation { relative: worst / extent, rounding: ROUNDINGS * f64::EPSILON * magnitude / extent }
+    // Where the motion is rigid, it is the copy that was meant: a fit could only flatter it.
+    let best = if motion.is_rigid() { None } else { rigid_fit(&pairs) };
+    let off = best.map(|best| pairs.iter().map(|(p, q)| (best.point(p) - q).amax()).fold(0.0, f64::max));
+    MotionDeviation {
+        rigid: off.unwrap_or(worst) / extent,
+        relative: worst / extent,
+        rounding: ROUNDINGS * f64::EPSILON * magnitude / extent,
+    }
 }
 
 /// Sub-samples of each side of a loop's polygon.

@@ -102,8 +102,8 @@ impl Lowering<'_> {
             for (content, tokens) in groups {
                 let inherited = self.inherited_by_curve(target);
                 let new = match content {
-                    NewCurve::Space { new, .. } => self.append_curve(new, &inherited)?,
-                    NewCurve::Plane { new, .. } => self.append_curve2d(new, &inherited)?,
+                    NewCurve::Space { new, .. } => self.append_curve(target, new, &inherited)?,
+                    NewCurve::Plane { new, .. } => self.append_curve2d(target, new, &inherited)?,
                 };
                 for token in tokens {
                     self.repoint(token, target, new);
@@ -144,7 +144,7 @@ impl Lowering<'_> {
             }
             _ => {
                 let inherited = self.inherited_by_curve(target);
-                let body = self.curve_body(new, &inherited)?;
+                let body = self.curve_body(target, new, &inherited)?;
                 self.rewrite(target, &body)
             }
         }
@@ -165,7 +165,7 @@ impl Lowering<'_> {
             }
             _ => {
                 let inherited = self.inherited_by_curve(target);
-                let body = self.curve2d_body(new, &inherited)?;
+                let body = self.curve2d_body(target, new, &inherited)?;
                 self.rewrite(target, &body)
             }
         }
@@ -228,22 +228,34 @@ impl Lowering<'_> {
         Ok(())
     }
 
-    /// Appends a curve in space with everything it refers to.
+    /// Appends a curve in space with everything it refers to; it stands for the record `old`, or is a part of
+    /// what does.
     pub(super) fn append_curve(
         &mut self,
+        old: InstanceName,
         curve: &Curve,
         inherited: &Inherited,
     ) -> Result<InstanceName, LowerError> {
-        let body = self.curve_body(curve, inherited)?;
+        let body = self.curve_body(old, curve, inherited)?;
         self.append(&body)
     }
 
-    fn append_curve2d(&mut self, curve: &Curve2d, inherited: &Inherited) -> Result<InstanceName, LowerError> {
-        let body = self.curve2d_body(curve, inherited)?;
+    fn append_curve2d(
+        &mut self,
+        old: InstanceName,
+        curve: &Curve2d,
+        inherited: &Inherited,
+    ) -> Result<InstanceName, LowerError> {
+        let body = self.curve2d_body(old, curve, inherited)?;
         self.append(&body)
     }
 
-    fn curve_body(&mut self, curve: &Curve, inherited: &Inherited) -> Result<Body, LowerError> {
+    fn curve_body(
+        &mut self,
+        old: InstanceName,
+        curve: &Curve,
+        inherited: &Inherited,
+    ) -> Result<Body, LowerError> {
         Ok(match curve {
             Curve::Line { origin, direction } => {
                 let point = self.append_point(origin.coords.as_slice())?;
@@ -264,10 +276,32 @@ impl Lowering<'_> {
                 let points = self.append_net(&compose::euclidean(spline.points()))?;
                 compose::spline_curve(spline, points, inherited)
             }
+            Curve::Parabola { frame, focal_distance } => {
+                let position = Value::Reference(self.append_frame(frame)?);
+                Body::simple("PARABOLA", vec![inherited.name(), position, Value::Real(*focal_distance)])
+            }
+            Curve::Hyperbola { frame, semi_axis, semi_imaginary_axis } => {
+                let position = Value::Reference(self.append_frame(frame)?);
+                let semi_axes = [semi_axis, semi_imaginary_axis].map(|&length| Value::Real(length));
+                Body::simple("HYPERBOLA", [vec![inherited.name(), position], semi_axes.to_vec()].concat())
+            }
+            Curve::Polyline(spline) => {
+                let points = self.append_net(&compose::euclidean(spline.points()))?;
+                let points = Value::List(points.into_iter().map(Value::Reference).collect());
+                Body::simple("POLYLINE", vec![inherited.name(), points])
+            }
+            Curve::Trimmed(_) | Curve::Composite(_) | Curve::Offset { .. } => {
+                return Err(LowerError::Unwritable { name: old, kind: curve.kind() });
+            }
         })
     }
 
-    fn curve2d_body(&mut self, curve: &Curve2d, inherited: &Inherited) -> Result<Body, LowerError> {
+    fn curve2d_body(
+        &mut self,
+        old: InstanceName,
+        curve: &Curve2d,
+        inherited: &Inherited,
+    ) -> Result<Body, LowerError> {
         Ok(match curve {
             Curve2d::Line { origin, direction } => {
                 let point = self.append_point(origin.coords.as_slice())?;
@@ -287,6 +321,7 @@ impl Lowering<'_> {
                 let points = self.append_net(&compose::euclidean(spline.points()))?;
                 compose::spline_curve(spline, points, inherited)
             }
+            _ => return Err(LowerError::Unwritable { name: old, kind: curve.kind() }),
         })
     }
 

@@ -25,7 +25,7 @@ use super::edit;
 use super::exchange_structure::{ExchangeStructure, InstanceName};
 use super::reverse_index::ReverseIndex;
 use super::write::{LineEnding, RecordWriter};
-use crate::exchange::{Edit, NameAllocator, Patch};
+use crate::exchange::{Edit, NameAllocator, Patch, PatchError};
 use crate::model::{ChangeSet, Model, Origin};
 use crate::source::Span;
 use request::Requests;
@@ -75,9 +75,20 @@ pub enum LowerError {
     /// New records have no name.
     #[error(transparent)]
     Names(#[from] crate::exchange::NamesExhausted),
-    /// The edits overlap, which is a fault of this module.
+    /// A record would be changed twice, in two ways.
+    #[error(
+        "{name} (line {line}) would be changed twice: two faces or shells of the part share it; \
+         give each a record of its own"
+    )]
+    ChangedTwice {
+        /// The record.
+        name: InstanceName,
+        /// Its line, from 1.
+        line: usize,
+    },
+    /// The edits do not fit the file, which is a fault of this module.
     #[error(transparent)]
-    Patch(#[from] crate::exchange::PatchError),
+    Patch(#[from] PatchError),
 }
 
 /// Edits a STEP file so that it says what the change set asks for.
@@ -148,7 +159,8 @@ impl<'a> Lowering<'a> {
     fn finish(mut self) -> Result<Patch, LowerError> {
         let appended = edit::append(self.structure, self.appended).ok_or(LowerError::NoDataSection)?;
         self.edits.extend(appended);
-        Ok(Patch::new(self.structure.source().bytes().len(), self.edits)?)
+        Patch::new(self.structure.source().bytes().len(), self.edits)
+            .map_err(|error| changed_twice(self.structure, error))
     }
 
     /// Replaces the text of a span.
@@ -174,6 +186,19 @@ impl<'a> Lowering<'a> {
         body.write(&mut writer);
         self.appended.push(writer.finish());
         Ok(name)
+    }
+}
+
+/// Edits that overlap, told by the record that they change.
+fn changed_twice(structure: &ExchangeStructure, error: PatchError) -> LowerError {
+    let PatchError::Overlap { second, .. } = error else { return error.into() };
+    let holds = |span: Span| span.start <= second.start && second.start < span.end;
+    match structure.instances().find(|instance| holds(instance.span())) {
+        Some(instance) => {
+            let line = structure.source().position(instance.span().start).line;
+            LowerError::ChangedTwice { name: instance.name(), line }
+        }
+        None => error.into(),
     }
 }
 

@@ -192,13 +192,13 @@ impl Lowering<'_> {
                 self.elementary("CONICAL_SURFACE", &inherited, frame, &[*radius, semi_angle / radians])?
             }
             Surface::LinearExtrusion { curve, direction } => {
-                let curve = self.append_curve(curve, &Inherited::nothing())?;
+                let curve = self.append_curve(old, curve, &Inherited::nothing())?;
                 let vector = self.append_vector(&super::curve::vector3(direction))?;
                 let [curve, vector] = [curve, vector].map(Value::Reference);
                 Body::simple("SURFACE_OF_LINEAR_EXTRUSION", vec![inherited.name(), curve, vector])
             }
             Surface::Revolution { curve, frame } => {
-                let curve = self.append_curve(curve, &Inherited::nothing())?;
+                let curve = self.append_curve(old, curve, &Inherited::nothing())?;
                 let axis = self.append_placement(&NewPlacement::Axis { old: None, new: *frame })?;
                 let [curve, axis] = [curve, axis].map(Value::Reference);
                 Body::simple("SURFACE_OF_REVOLUTION", vec![inherited.name(), curve, axis])
@@ -206,6 +206,12 @@ impl Lowering<'_> {
             Surface::Nurbs(spline) => {
                 let points = self.append_net(&compose::euclidean(spline.net()))?;
                 compose::spline_surface(spline, &points, &inherited)
+            }
+            Surface::Offset { .. }
+            | Surface::Trimmed { .. }
+            | Surface::CurveBounded { .. }
+            | Surface::Composite(_) => {
+                return Err(LowerError::Unwritable { name: old, kind: surface.kind() });
             }
         })
     }

@@ -4,10 +4,11 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::assembly::{Items, mapped_representation};
 use super::code::ModelCode;
 use super::curve::Trims;
 use super::product::Products;
-use super::roots::Roots;
+use super::roots::{Root, Roots};
 use super::scope::Scope;
 use super::topology::Builder;
 use super::units::Contexts;
@@ -22,6 +23,8 @@ use crate::step::{InstanceName, Parameters};
 /// Which representation holds each body or shell, and what else shape representations hold.
 pub(super) struct Holders {
     representation: HashMap<InstanceName, InstanceName>,
+    /// What representations hold that an assembly is made of.
+    pub(super) items: Items,
     /// Curves, and sets of them, with their representation; in file order.
     curves: Vec<(InstanceName, InstanceName)>,
     /// Faces, edges and the like, which should be part of a body too.
@@ -35,19 +38,27 @@ impl Holders {
         products: &mut Products,
         sink: &mut dyn Sink,
     ) -> Self {
-        let mut holders = Self { representation: HashMap::new(), curves: Vec::new(), elements: Vec::new() };
-        let known: HashSet<InstanceName> = roots.bodies.iter().chain(&roots.shells).copied().collect();
-        for &name in &roots.representations {
+        let mut holders = Self {
+            representation: HashMap::new(),
+            items: Items::default(),
+            curves: Vec::new(),
+            elements: Vec::new(),
+        };
+        let bodies = roots.of(Root::Body).iter();
+        let known: HashSet<InstanceName> = bodies.chain(roots.of(Root::Shell)).copied().collect();
+        for &name in roots.of(Root::Representation) {
             let Ok(view) = scope.view(name) else { continue };
             let Ok(items) = view.references("items") else {
                 let message = format!("{}: items is no list", view.entity());
                 sink.report(ModelCode::BadReference.at(scope.file, name, message));
                 continue;
             };
-            let shape = view.is(Entity::ShapeRepresentation);
+            let shape =
+                view.is(Entity::ShapeRepresentation) && view.entity() != Entity::ShapeDimensionRepresentation;
             for item in items {
                 if known.contains(&item) {
                     holders.representation.entry(item).or_insert(name);
+                    holders.items.bodies.entry(name).or_default().push(item);
                 } else if shape {
                     holders.other_item(scope, item, name, products, sink);
                 }
@@ -74,7 +85,10 @@ impl Holders {
         if view.is(Entity::MappedItem) {
             let mapped = mapped_representation(scope, &view);
             match mapped {
-                Some(mapped) => products.relate_mapping(representation, mapped),
+                Some(mapped) => {
+                    products.relate_mapping(representation, mapped);
+                    self.items.mapped.entry(representation).or_default().push(item);
+                }
                 None => report(ModelCode::BadReference, "MAPPED_ITEM: no mapped representation".to_owned()),
             }
         } else if view.is(Entity::GeometricSet) || view.is(Entity::Curve) {
@@ -91,11 +105,6 @@ impl Holders {
     }
 }
 
-fn mapped_representation(scope: Scope<'_>, item: &EntityView<'_>) -> Option<InstanceName> {
-    let map = scope.view_of(item.reference("mapping_source").ok()?, Entity::RepresentationMap).ok()?;
-    map.reference("mapped_representation").ok()
-}
-
 /// The bodies that were built, beside the topology in the builder.
 pub(super) struct Bodies<'p> {
     pub(super) attributes: Arena<BodyId, BodyAttributes>,
@@ -103,7 +112,7 @@ pub(super) struct Bodies<'p> {
     pub(super) contexts: Contexts,
     pub(super) free_curves: Vec<CurveId>,
     products: &'p Products,
-    holders: Holders,
+    pub(super) holders: Holders,
 }
 
 impl<'p> Bodies<'p> {
@@ -120,12 +129,12 @@ impl<'p> Bodies<'p> {
 
     /// Builds every body, then the shells that none of them holds, then the free curves.
     pub(super) fn build(&mut self, builder: &mut Builder<'_, '_>, roots: &Roots) {
-        for &name in &roots.bodies {
+        for &name in roots.of(Root::Body) {
             if let Ok(view) = builder.scope.view(name) {
                 self.body(builder, &view);
             }
         }
-        for &name in &roots.shells {
+        for &name in roots.of(Root::Shell) {
             if !builder.shells.contains_key(&name) {
                 self.loose_shell(builder, name);
             }
@@ -133,7 +142,7 @@ impl<'p> Bodies<'p> {
         self.curves(builder);
         self.loose_elements(builder);
         if self.contexts.all.is_empty() {
-            for &name in &roots.contexts {
+            for &name in roots.of(Root::Context) {
                 self.contexts.of(builder.scope, name, builder.sink);
             }
         }

@@ -12,6 +12,8 @@ pub enum ModelCode {
     NotReadYet,
     /// Geometry whose data contradict themselves or the standard.
     BadGeometry,
+    /// A number beyond every finite one: whoever wrote it lost the value.
+    NotFinite,
     /// Topology that cannot be built: the element is left out or counts as unread.
     BadTopology,
     /// A chain of references that returns to itself.
@@ -28,6 +30,12 @@ pub enum ModelCode {
     LooseBody,
     /// A shell that several bodies hold; the first has it.
     SharedShell,
+    /// A face that its shell lists more than once; it counts once.
+    RepeatedFace,
+    /// A context's uncertainty that is no positive length.
+    BadUncertainty,
+    /// A record of the header that is missing or has not the attributes that it must have.
+    BadHeader,
     /// A coordinate without a point, against ISO 10303-21; said once for a file.
     IntegerForReal,
     /// A coordinate with a lower-case exponent, against ISO 10303-21; said once for a file.
@@ -36,6 +44,8 @@ pub enum ModelCode {
     RawString,
     /// A product, an assembly use, a style or a layer that cannot be followed.
     BadReference,
+    /// An assembly with more instances than are walked.
+    TooManyInstances,
 }
 
 impl ModelCode {
@@ -45,6 +55,7 @@ impl ModelCode {
         match self {
             Self::NotReadYet => "step.not-read-yet",
             Self::BadGeometry => "step.bad-geometry",
+            Self::NotFinite => "step.not-finite",
             Self::BadTopology => "step.bad-topology",
             Self::Cycle => "step.cycle",
             Self::Dangling => "step.dangling-reference",
@@ -53,10 +64,14 @@ impl ModelCode {
             Self::UnknownUnit => "step.unknown-unit",
             Self::LooseBody => "step.loose-body",
             Self::SharedShell => "step.shared-shell",
+            Self::RepeatedFace => "step.repeated-face",
+            Self::BadUncertainty => "step.bad-uncertainty",
+            Self::BadHeader => "step.bad-header",
             Self::IntegerForReal => "step.integer-for-real",
             Self::LowerCaseExponent => "step.lower-case-exponent",
             Self::RawString => "step.raw-string",
             Self::BadReference => "step.bad-reference",
+            Self::TooManyInstances => "step.too-many-instances",
         }
     }
 
@@ -65,16 +80,22 @@ impl ModelCode {
     pub fn severity(self) -> Severity {
         match self {
             Self::NotReadYet => Severity::Note,
-            Self::BadGeometry | Self::BadTopology | Self::Cycle | Self::Dangling => Severity::Error,
+            Self::BadGeometry | Self::NotFinite | Self::BadTopology | Self::Cycle | Self::Dangling => {
+                Severity::Error
+            }
             Self::BadPcurve
             | Self::MissingUnit
             | Self::UnknownUnit
             | Self::LooseBody
             | Self::SharedShell
+            | Self::RepeatedFace
+            | Self::BadUncertainty
+            | Self::BadHeader
             | Self::IntegerForReal
             | Self::LowerCaseExponent
             | Self::RawString
-            | Self::BadReference => Severity::Warning,
+            | Self::BadReference
+            | Self::TooManyInstances => Severity::Warning,
         }
     }
 

@@ -1,11 +1,13 @@
 //! Curves in space: ISO 10303-42 chapter 4.
 
+use super::bounded_curve::{self, Nest};
 use super::error::ReadError;
 use super::placement::{frame, point3, vector3};
 use super::scope::Scope;
 use super::spline::{Form, WrittenKnots, apply_weights, implied_knots};
 use crate::geometry::Curve;
 use crate::geometry::nurbs::{KnotVector, NurbsCurve3};
+use crate::math::Frame;
 use crate::step::InstanceName;
 use crate::step::entity::Entity;
 use crate::step::view::{EntityView, count, list, real, reference};
@@ -53,11 +55,22 @@ pub(super) fn resolve(
 
 /// Reads a curve that is no surface curve.
 pub(super) fn read(scope: Scope<'_>, name: InstanceName) -> Result<Curve, ReadError> {
+    read_nested(scope, name, Nest::new(&Nest::budget()))
+}
+
+/// As [`read`], for a curve within others.
+pub(super) fn read_nested(scope: Scope<'_>, name: InstanceName, nest: Nest<'_>) -> Result<Curve, ReadError> {
     let view = scope.view(name)?;
     match view.entity() {
         Entity::Line => line(scope, &view),
         Entity::Circle => circle(scope, &view),
         Entity::Ellipse => ellipse(scope, &view),
+        Entity::Parabola => parabola(scope, &view),
+        Entity::Hyperbola => hyperbola(scope, &view),
+        Entity::Polyline => polyline(scope, &view),
+        Entity::TrimmedCurve => bounded_curve::trimmed(scope, &view, nest),
+        Entity::OffsetCurve3d => bounded_curve::offset(scope, &view, nest),
+        _ if view.is(Entity::CompositeCurve) => bounded_curve::composite(scope, &view, nest),
         _ if view.is(Entity::BSplineCurve) => spline(scope, &view).map(Curve::Nurbs),
         _ if view.is(Entity::Curve) => Err(ReadError::NotReadYet),
         found => Err(ReadError::WrongEntity {
@@ -87,6 +100,42 @@ fn ellipse(scope: Scope<'_>, view: &EntityView<'_>) -> Result<Curve, ReadError> 
         semi_axis_1: positive(real(first, "semi_axis_1")?, "semi_axis_1")?,
         semi_axis_2: positive(real(second, "semi_axis_2")?, "semi_axis_2")?,
     })
+}
+
+fn parabola(scope: Scope<'_>, view: &EntityView<'_>) -> Result<Curve, ReadError> {
+    let [position, focal] = view.fields(["position", "focal_dist"]);
+    let (frame, focal) = (frame(scope, reference(position, "position")?)?, real(focal, "focal_dist")?);
+    if focal == 0.0 {
+        return Err(ReadError::NotPositive { attribute: "focal_dist", value: focal });
+    }
+    // A negative distance, which the standard allows, opens the curve the other way: both axes turn.
+    let turned = Frame { x: -frame.x, y: -frame.y, ..frame };
+    let frame = if focal < 0.0 { turned } else { frame };
+    Ok(Curve::Parabola { frame, focal_distance: focal.abs() })
+}
+
+fn hyperbola(scope: Scope<'_>, view: &EntityView<'_>) -> Result<Curve, ReadError> {
+    let [position, real_axis, imaginary] = view.fields(["position", "semi_axis", "semi_imag_axis"]);
+    Ok(Curve::Hyperbola {
+        frame: frame(scope, reference(position, "position")?)?,
+        semi_axis: positive(real(real_axis, "semi_axis")?, "semi_axis")?,
+        semi_imaginary_axis: positive(real(imaginary, "semi_imag_axis")?, "semi_imag_axis")?,
+    })
+}
+
+fn polyline(scope: Scope<'_>, view: &EntityView<'_>) -> Result<Curve, ReadError> {
+    let mut points = Vec::new();
+    for name in view.references("points")? {
+        let point = point3(scope, name)?;
+        points.push([point.x, point.y, point.z, 1.0]);
+    }
+    Ok(Curve::Polyline(NurbsCurve3::new(polyline_knots(points.len())?, points)?))
+}
+
+/// Knots 0, 1, 2, … of a polyline.
+pub(super) fn polyline_knots(points: usize) -> Result<KnotVector, ReadError> {
+    let spans = points.checked_sub(1).filter(|&n| n > 0).ok_or(ReadError::Empty { attribute: "points" })?;
+    Ok(KnotVector::clamped_uniform(1, spans, 0.0, spans as f64)?)
 }
 
 /// A B-spline curve of any form, with weights or without.

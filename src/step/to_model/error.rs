@@ -3,7 +3,7 @@
 use super::code::ModelCode;
 use crate::geometry::nurbs::{KnotVectorError, NetError};
 use crate::step::InstanceName;
-use crate::step::view::AttributeError;
+use crate::step::view::{AttributeError, OUT_OF_RANGE};
 
 /// Why geometry or topology cannot be read from a record.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -26,6 +26,9 @@ pub(super) enum ReadError {
     /// An attribute that is not what the schema says.
     #[error(transparent)]
     Attribute(#[from] AttributeError),
+    /// A word of an SI unit that is none, or not the one of the quantity.
+    #[error("the word `{found}` of the unit is not known here, expected {expected}")]
+    UnitName { found: String, expected: String },
     /// A radius, semi-axis or the like.
     #[error("{attribute} is {value}, expected a positive number")]
     NotPositive { attribute: &'static str, value: f64 },
@@ -33,11 +36,17 @@ pub(super) enum ReadError {
     #[error("semi_angle is {radians} rad, expected an angle between 0 and a right angle")]
     SemiAngle { radians: f64 },
     /// Coordinates or direction ratios are too few, not numbers, or all zero.
-    #[error("{0} has no two or three finite coordinates")]
+    #[error("{0} has no two or three coordinates")]
     Coordinates(InstanceName),
+    /// A coordinate or direction ratio that no number of 64 bits holds.
+    #[error("{0} has the coordinate {1}, which is beyond every finite number; write it as a finite real")]
+    NotFinite(InstanceName, String),
     /// A direction of length zero.
     #[error("{0} is a direction of length zero")]
     ZeroDirection(InstanceName),
+    /// A multiplicity that is no positive integer.
+    #[error("multiplicity {index} (from 0){direction} is {}, expected an integer of at least 1", whole(.value))]
+    Multiplicity { direction: &'static str, index: usize, value: Option<i64> },
     /// Count of knots.
     #[error(
         "{expected} knots{direction} expected for degree {degree} and {points} control points, found {found}"
@@ -55,9 +64,19 @@ pub(super) enum ReadError {
     /// A net that does not fit its knots, or has bad numbers.
     #[error(transparent)]
     Net(#[from] NetError),
+    /// A piece of a curve or surface without extent.
+    #[error("nothing lies between the trims {from} and {to}")]
+    NoPiece { from: f64, to: f64 },
+    /// A part of a composite without ends.
+    #[error("{attribute} has a member without ends, or is no full grid")]
+    Unbounded { attribute: &'static str },
     /// A loop without edges, a shell without faces.
     #[error("{attribute} is empty")]
     Empty { attribute: &'static str },
+}
+
+fn whole(value: &Option<i64>) -> String {
+    value.map_or_else(|| "no integer".to_owned(), |value| value.to_string())
 }
 
 impl ReadError {
@@ -68,6 +87,7 @@ impl ReadError {
             Self::Basis { source, .. } => source.geometry_code(),
             Self::Dangling(_) => ModelCode::Dangling,
             Self::Cycle(_) => ModelCode::Cycle,
+            _ if self.is_not_finite() => ModelCode::NotFinite,
             _ => ModelCode::BadGeometry,
         }
     }
@@ -77,7 +97,17 @@ impl ReadError {
         match self {
             Self::Dangling(_) => ModelCode::Dangling,
             Self::Cycle(_) => ModelCode::Cycle,
+            _ if self.is_not_finite() => ModelCode::NotFinite,
             _ => ModelCode::BadTopology,
+        }
+    }
+
+    /// Whether a number of the file is beyond every finite one.
+    fn is_not_finite(&self) -> bool {
+        match self {
+            Self::NotFinite(..) => true,
+            Self::Attribute(error) => error.found == OUT_OF_RANGE,
+            _ => false,
         }
     }
 }

@@ -4,13 +4,18 @@
 //! radians. What cannot be read is carried with the reason, and reported; what stands in the file and
 //! is not asked for is not looked at.
 //!
-//! INVARIANT: no function recurses over references; chains are followed in loops with a cap.
+//! INVARIANT: chains of references are followed in loops with a cap, or, where geometry is made of geometry, by
+//! recursion with a cap on depth and on the count of parts.
 
+mod annotation;
+mod assembly;
 mod body;
+mod bounded_curve;
 pub mod code;
 mod curve;
 mod curve2d;
 mod error;
+mod header;
 mod placement;
 mod presentation;
 mod product;
@@ -21,21 +26,24 @@ mod surface;
 #[cfg(test)]
 mod tests;
 mod topology;
+mod transformation;
 mod units;
 
 pub use code::ModelCode;
 pub use curve2d::parameter_scale;
 
-use super::ExchangeStructure;
+use super::{ExchangeStructure, InstanceName};
 use crate::diagnostic::Sink;
-use crate::model::Model;
+use crate::model::{Model, Origin};
+use assembly::{Assembly, Given};
 use body::{Bodies, Holders};
+use presentation::Styled;
 use product::Products;
 use roots::Roots;
 use scope::{Habits, Scope};
 use topology::Builder;
 
-/// Reads the bodies, free curves, units, products, names, colours and layers of a file.
+/// Reads the bodies, free curves, units, products, assembly, looks, layers and annotations of a file.
 ///
 /// Never fails: a damaged element is carried as unread or left out, and a diagnostic says so.
 pub fn to_model(file: &ExchangeStructure, sink: &mut dyn Sink) -> Model {
@@ -44,30 +52,41 @@ pub fn to_model(file: &ExchangeStructure, sink: &mut dyn Sink) -> Model {
     let scope = Scope { file, radians: 1.0, habits: &habits };
     let mut products = Products::read(scope, &roots, sink);
     let holders = Holders::find(scope, &roots, &mut products, sink);
-    let occurrences = products.occurrences(scope, &roots, sink);
     let mut builder = Builder::new(scope, sink);
     let mut bodies = Bodies::new(&products, holders);
     bodies.build(&mut builder, &roots);
-    presentation::apply(&mut builder, &roots, &mut bodies.attributes);
+    let Bodies { mut attributes, context, mut contexts, free_curves, holders, .. } = bodies;
+    let known = builder.origins.bodies.iter().filter_map(|(body, origin)| match origin {
+        Origin::Instance(name) => Some((InstanceName(*name), body)),
+        Origin::DirectoryEntry(_) => None,
+    });
+    let given = Given { scope, roots: &roots, items: &holders.items, bodies: &known.collect() };
+    let Assembly { mut occurrences, placed } =
+        assembly::assemble(&given, &mut products, &mut contexts, builder.sink);
+    let mut styled = Styled {
+        products: &mut products,
+        bodies: &mut attributes,
+        occurrences: &mut occurrences,
+        placed: &placed,
+    };
+    presentation::apply(&mut builder, &roots, &mut styled);
+    let annotations = annotation::annotations(&builder, &roots, &products);
     let Builder { brep, origins, faces, sink, .. } = builder;
     habits.report(file, sink);
-    Model {
-        schema: schema(file),
+    header::check(file, sink);
+    let model = Model {
+        schema: file.schemas().map(|name| name.into_owned()).collect(),
         brep,
-        contexts: bodies.contexts.all,
-        body_context: bodies.context,
+        contexts: contexts.all,
+        body_context: context,
         faces,
-        bodies: bodies.attributes,
-        free_curves: bodies.free_curves,
+        bodies: attributes,
+        free_curves,
         products: products.all,
         occurrences,
+        annotations,
         origins,
-    }
-}
-
-/// Schema names of the header, decoded.
-fn schema(file: &ExchangeStructure) -> Vec<String> {
-    let record = file.header().find(|record| record.keyword().eq_ignore_ascii_case(b"FILE_SCHEMA"));
-    let list = record.and_then(|record| record.parameters().next()).and_then(|names| names.as_list());
-    list.into_iter().flatten().filter_map(|name| name.as_str()).map(|name| name.into_owned()).collect()
+    };
+    assembly::report_size(&model, scope, sink);
+    model
 }

@@ -89,11 +89,11 @@ fn coordinates<const N: usize>(
         // Lower case, a short name, a complex instance, or something else altogether.
         let view = scope.view_of(name, entity)?;
         let attribute = if entity == Entity::Direction { "direction_ratios" } else { "coordinates" };
-        return numbers(scope, name, view.list(attribute)?).ok_or(ReadError::Coordinates(name));
+        return numbers(scope, name, view.list(attribute)?);
     };
     let mut parameters = instance.parameters_in(inside);
     let list = parameters.nth(1).and_then(|parameter| parameter.as_list());
-    list.and_then(|list| numbers(scope, name, list)).ok_or(ReadError::Coordinates(name))
+    numbers(scope, name, list.ok_or(ReadError::Coordinates(name))?)
 }
 
 /// The first `N` numbers of `KEYWORD('…',(…` when it is written without liberties; `None` sends everything
@@ -132,10 +132,10 @@ fn numbers<const N: usize>(
     scope: Scope<'_>,
     name: InstanceName,
     mut list: Parameters<'_>,
-) -> Option<[f64; N]> {
+) -> Result<[f64; N], ReadError> {
     let mut numbers = [0.0; N];
     for number in &mut numbers {
-        let parameter = list.next()?;
+        let parameter = list.next().ok_or(ReadError::Coordinates(name))?;
         match parameter.kind() {
             ParameterKind::Real if !parameter.text().contains(&b'e') => {}
             ParameterKind::Real if scope.habits.exponent.get().is_none() => {
@@ -146,7 +146,14 @@ fn numbers<const N: usize>(
             }
             _ => {}
         }
-        *number = parameter.as_f64().filter(|number| number.is_finite())?;
+        *number = match (parameter.as_f64(), parameter.kind()) {
+            (Some(value), _) if value.is_finite() => value,
+            (_, ParameterKind::Real) => {
+                let text = String::from_utf8_lossy(parameter.text()).into_owned();
+                return Err(ReadError::NotFinite(name, text));
+            }
+            _ => return Err(ReadError::Coordinates(name)),
+        };
     }
-    Some(numbers)
+    Ok(numbers)
 }

@@ -1,15 +1,15 @@
-//! Products, their shapes and their uses in each other: ISO 10303-41 and -44.
+//! Products, which representations are shapes of them, and other files that they stand in: ISO 10303-41.
 //!
-//! Parts keep their own coordinates: where an assembly puts them is not looked at.
+//! Where an assembly puts them is `assembly`'s knowledge.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use super::code::ModelCode;
 use super::error::ReadError;
-use super::roots::Roots;
+use super::roots::{Root, Roots};
 use super::scope::Scope;
 use crate::diagnostic::Sink;
-use crate::model::{Occurrence, Origin, Product};
+use crate::model::{Appearance, Origin, Product};
 use crate::step::entity::Entity;
 use crate::step::{InstanceName, ParameterKind, string};
 
@@ -22,6 +22,10 @@ pub(super) struct Products {
     index: BTreeMap<InstanceName, usize>,
     /// Product of a representation that a shape definition names.
     of_representation: BTreeMap<InstanceName, usize>,
+    /// Representations that shape definitions name, by product.
+    pub(super) representations: Vec<Vec<InstanceName>>,
+    /// Representation of a use of a product, where a shape definition names one.
+    pub(super) of_occurrence: BTreeMap<InstanceName, InstanceName>,
     /// Equivalent representations, both ways.
     related: BTreeMap<InstanceName, Vec<InstanceName>>,
 }
@@ -33,29 +37,41 @@ impl Products {
             all: Vec::new(),
             index: BTreeMap::new(),
             of_representation: BTreeMap::new(),
+            representations: Vec::new(),
+            of_occurrence: BTreeMap::new(),
             related: BTreeMap::new(),
         };
-        for &name in &roots.products {
+        for &name in roots.of(Root::Product) {
             let product = product(scope, name, sink).unwrap_or_else(|error| {
                 let message = format!("PRODUCT_DEFINITION: {error}");
                 sink.report(ModelCode::BadReference.at(scope.file, name, message));
-                Product { id: String::new(), name: String::new(), origin: Origin::Instance(name.0) }
+                named(name, String::new(), String::new())
             });
             products.index.insert(name, products.all.len());
             products.all.push(product);
         }
-        for &name in &roots.shape_definitions {
-            if let Some((representation, product)) = products.shape(scope, name) {
-                products.of_representation.entry(representation).or_insert(product);
-            }
+        products.representations = vec![Vec::new(); products.all.len()];
+        for &name in roots.of(Root::ShapeDefinition) {
+            products.shape(scope, name);
         }
-        for &name in &roots.relationships {
+        for &name in roots.of(Root::Relationship) {
             if let Ok((a, b)) = pair(scope, name, "rep_1", "rep_2") {
                 products.related.entry(a).or_default().push(b);
                 products.related.entry(b).or_default().push(a);
             }
         }
+        products.documents(scope, roots);
         products
+    }
+
+    /// Index of a product definition.
+    pub(super) fn index(&self, definition: InstanceName) -> Option<usize> {
+        self.index.get(&definition).copied()
+    }
+
+    /// Product of a representation that a shape definition names.
+    pub(super) fn of_representation(&self, representation: InstanceName) -> Option<usize> {
+        self.of_representation.get(&representation).copied()
     }
 
     /// Lets a representation that maps another stand for its product, where nothing nearer does.
@@ -80,35 +96,67 @@ impl Products {
         None
     }
 
-    /// The uses of products in each other.
-    pub(super) fn occurrences(
-        &self,
-        scope: Scope<'_>,
-        roots: &Roots,
-        sink: &mut dyn Sink,
-    ) -> Vec<Occurrence> {
-        let mut occurrences = Vec::new();
-        for &name in &roots.occurrences {
-            let ends = pair(scope, name, "relating_product_definition", "related_product_definition");
-            let known = ends.ok().and_then(|(a, b)| Some((*self.index.get(&a)?, *self.index.get(&b)?)));
-            let Some((parent, child)) = known else {
-                let message = "NEXT_ASSEMBLY_USAGE_OCCURRENCE: its product definitions are not in the file";
-                sink.report(ModelCode::BadReference.at(scope.file, name, message.to_owned()));
-                continue;
-            };
-            let text = scope.view(name).map(|view| view.text("name").into_owned()).unwrap_or_default();
-            occurrences.push(Occurrence { parent, child, name: text });
-        }
-        occurrences
-    }
-
-    /// Representation and product of a shape definition representation; none when it defines the shape of
-    /// an aspect or of an occurrence.
-    fn shape(&self, scope: Scope<'_>, name: InstanceName) -> Option<(InstanceName, usize)> {
+    /// Takes in a shape definition representation: of a product, or of a use of one. Aspects of shapes are
+    /// passed over.
+    fn shape(&mut self, scope: Scope<'_>, name: InstanceName) -> Option<()> {
         let (definition, representation) = pair(scope, name, "definition", "used_representation").ok()?;
         let property = scope.view_of(definition, Entity::PropertyDefinition).ok()?;
-        let product = self.index.get(&property.reference("definition").ok()?)?;
-        Some((representation, *product))
+        let definition = property.reference("definition").ok()?;
+        if let Some(&product) = self.index.get(&definition) {
+            self.of_representation.entry(representation).or_insert(product);
+            if !self.representations[product].contains(&representation) {
+                self.representations[product].push(representation);
+            }
+        } else if scope.view_of(definition, Entity::NextAssemblyUsageOccurrence).is_ok() {
+            self.of_occurrence.entry(definition).or_insert(representation);
+        }
+        Some(())
+    }
+
+    /// Names of the files that products stand in: documents of a kind that is a file.
+    fn documents(&mut self, scope: Scope<'_>, roots: &Roots) {
+        let views = || roots.of(Root::Document).iter().filter_map(|&name| scope.view(name).ok());
+        let mut names: BTreeMap<InstanceName, String> = BTreeMap::new();
+        for view in views().filter(|v| v.entity() == Entity::AppliedExternalIdentificationAssignment) {
+            for item in view.references("items").into_iter().flatten() {
+                names.entry(item).or_insert_with(|| view.text("assigned_id").into_owned());
+            }
+        }
+        let mut of_formation: BTreeMap<InstanceName, Vec<usize>> = BTreeMap::new();
+        for (&definition, &product) in &self.index {
+            if let Some(formation) = scope.view(definition).ok().and_then(|v| v.reference("formation").ok()) {
+                of_formation.entry(formation).or_default().push(product);
+            }
+        }
+        for view in views().filter(|view| view.entity() == Entity::AppliedDocumentReference) {
+            let Ok(document) = view.reference("assigned_document") else { continue };
+            let Ok(file) = scope.view_of(document, Entity::DocumentFile) else { continue };
+            let given = names.get(&document).filter(|name| !name.trim().is_empty()).cloned();
+            let name = given.unwrap_or_else(|| file.text("id").into_owned());
+            for item in view.references("items").into_iter().flatten() {
+                // A file is that of a product definition, or of every one of a formation.
+                let products =
+                    self.index.get(&item).into_iter().chain(of_formation.get(&item).into_iter().flatten());
+                for &product in products {
+                    let external = &mut self.all[product].external;
+                    if !external.contains(&name) {
+                        external.push(name.clone());
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn named(definition: InstanceName, id: String, name: String) -> Product {
+    Product {
+        id,
+        name,
+        origin: Origin::Instance(definition.0),
+        unit: None,
+        shapes: Vec::new(),
+        appearance: Appearance::default(),
+        external: Vec::new(),
     }
 }
 
@@ -135,9 +183,5 @@ fn product(scope: Scope<'_>, definition: InstanceName, sink: &mut dyn Sink) -> R
             sink.report(ModelCode::RawString.at(scope.file, product.name(), message));
         }
     }
-    Ok(Product {
-        id: product.text("id").into_owned(),
-        name: product.text("name").into_owned(),
-        origin: Origin::Instance(definition.0),
-    })
+    Ok(named(definition, product.text("id").into_owned(), product.text("name").into_owned()))
 }

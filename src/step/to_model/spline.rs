@@ -2,9 +2,9 @@
 
 use super::error::ReadError;
 use crate::geometry::nurbs::{KnotVector, KnotVectorError};
-use crate::step::Parameters;
 use crate::step::entity::Entity;
 use crate::step::view::EntityView;
+use crate::step::{Parameter, Parameters};
 
 /// How the knots of a B-spline entity follow from its type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,10 +51,14 @@ impl WrittenKnots<'_> {
     pub(super) fn read(self, degree: usize, points: usize) -> Result<KnotVector, ReadError> {
         check_degree(degree)?;
         let values: Vec<f64> = self.knots.map(|knot| knot.as_f64().unwrap_or(f64::NAN)).collect();
-        let multiplicities: Vec<usize> = self
-            .multiplicities
-            .map(|m| m.as_i64().and_then(|m| usize::try_from(m).ok()).unwrap_or(0))
-            .collect();
+        let direction = self.direction;
+        let positive = |(index, written): (usize, Parameter<'_>)| {
+            let value = written.as_i64();
+            let count = value.and_then(|value| usize::try_from(value).ok()).filter(|&count| count > 0);
+            count.ok_or(ReadError::Multiplicity { direction, index, value })
+        };
+        let multiplicities: Vec<usize> =
+            self.multiplicities.enumerate().map(positive).collect::<Result<_, _>>()?;
         let found = multiplicities.iter().fold(0_usize, |sum, &m| sum.saturating_add(m));
         let expected = points + degree + 1;
         if found != expected {

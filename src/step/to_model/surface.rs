@@ -2,21 +2,34 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use super::bounded_curve::{Nest, within};
 use super::curve::{self, Trims, positive};
+use super::curve2d::parameter_scale;
 use super::error::ReadError;
 use super::placement::{frame, point3, vector3};
-use super::scope::{Scope, entity_name};
+use super::scope::Scope;
 use super::spline::{Form, WrittenKnots, apply_weights, implied_knots};
 use crate::geometry::nurbs::{KnotVector, NurbsSurface};
-use crate::geometry::{Curve, Surface};
+use crate::geometry::{Curve, Patch, PatchGrid, Surface};
 use crate::step::entity::Entity;
-use crate::step::view::{EntityView, count, list, real, reference};
+use crate::step::view::{EntityView, boolean, count, list, real, reference};
 use crate::step::{InstanceName, Parameter};
 
 /// Reads a surface.
 pub(super) fn read(scope: Scope<'_>, name: InstanceName) -> Result<Surface, ReadError> {
+    read_nested(scope, name, Nest::new(&Nest::budget()))
+}
+
+fn read_nested(scope: Scope<'_>, name: InstanceName, nest: Nest<'_>) -> Result<Surface, ReadError> {
     let view = scope.view(name)?;
     match view.entity() {
+        Entity::OffsetSurface => {
+            let distance = view.real("distance")?;
+            Ok(Surface::Offset { basis: basis(scope, &view, nest)?, distance })
+        }
+        Entity::RectangularTrimmedSurface => trimmed(scope, &view, nest),
+        Entity::CurveBoundedSurface => Ok(Surface::CurveBounded { basis: basis(scope, &view, nest)? }),
+        Entity::RectangularCompositeSurface => composite(scope, &view, nest),
         Entity::Plane => Ok(Surface::Plane(frame(scope, view.reference("position")?)?)),
         Entity::CylindricalSurface | Entity::SphericalSurface => round(scope, &view),
         Entity::ConicalSurface => cone(scope, &view),
@@ -72,14 +85,96 @@ fn torus(scope: Scope<'_>, view: &EntityView<'_>) -> Result<Surface, ReadError> 
     })
 }
 
+/// The surface that another is made of; a failure names it.
+fn basis(scope: Scope<'_>, view: &EntityView<'_>, nest: Nest<'_>) -> Result<Box<Surface>, ReadError> {
+    part(scope, view, "basis_surface", nest).map(Box::new)
+}
+
+fn part(
+    scope: Scope<'_>,
+    view: &EntityView<'_>,
+    attribute: &'static str,
+    nest: Nest<'_>,
+) -> Result<Surface, ReadError> {
+    let name = view.reference(attribute)?;
+    nest.inner(name)
+        .and_then(|nest| read_nested(scope, name, nest))
+        .map_err(|source| within(scope, attribute, name, source))
+}
+
+/// A `RECTANGULAR_TRIMMED_SURFACE`; its trims count in the file's units of angle where the parameter is one.
+fn trimmed(scope: Scope<'_>, view: &EntityView<'_>, nest: Nest<'_>) -> Result<Surface, ReadError> {
+    let basis = basis(scope, view, nest)?;
+    let [u1, u2, v1, v2, usense, vsense] = view.fields(["u1", "u2", "v1", "v2", "usense", "vsense"]);
+    let [su, sv] = parameter_scale(&basis, scope.radians);
+    let (us, vs) = basis.domain();
+    let (pu, pv) = basis.periods();
+    let forward = [boolean(usense, "usense")?, boolean(vsense, "vsense")?];
+    let u = side([real(u1, "u1")? * su, real(u2, "u2")? * su], forward[0], us, pu)?;
+    let v = side([real(v1, "v1")? * sv, real(v2, "v2")? * sv], forward[1], vs, pv)?;
+    Ok(Surface::Trimmed { basis, u, v, forward })
+}
+
+/// One side of a rectangle: from the first trim to the second along the sense, over the seam where the surface
+/// is closed.
+fn side(
+    [from, to]: [f64; 2],
+    forward: bool,
+    (low, high): (f64, f64),
+    period: Option<f64>,
+) -> Result<(f64, f64), ReadError> {
+    let (mut start, mut end) = if forward { (from, to) } else { (to, from) };
+    match period {
+        Some(period) => {
+            let way = (end - start).rem_euclid(period);
+            let whole = way <= SAME * period || way >= (1.0 - SAME) * period;
+            start = low + (start - low).rem_euclid(period);
+            end = start + if whole { period } else { way };
+        }
+        None => {
+            if start > end {
+                std::mem::swap(&mut start, &mut end);
+            }
+            (start, end) = (start.max(low), end.min(high));
+        }
+    }
+    if end > start && (end - start).is_finite() {
+        Ok((start, end))
+    } else {
+        Err(ReadError::NoPiece { from, to })
+    }
+}
+
+/// Part of a period below which two trims count as one.
+const SAME: f64 = 1e-9;
+
+/// A `RECTANGULAR_COMPOSITE_SURFACE`: a list of patches along `v` for each step of `u`.
+fn composite(scope: Scope<'_>, view: &EntityView<'_>, nest: Nest<'_>) -> Result<Surface, ReadError> {
+    let attribute = "segments";
+    let mut patches = Vec::new();
+    let mut rows = 0;
+    for (at, column) in view.list(attribute)?.enumerate() {
+        let before = patches.len();
+        for member in list(Some(column), attribute)? {
+            let patch = scope.view_of(reference(Some(member), attribute)?, Entity::SurfacePatch)?;
+            let [u, v] = patch.fields(["u_sense", "v_sense"]);
+            let forward = [boolean(u, "u_sense")?, boolean(v, "v_sense")?];
+            patches.push(Patch { surface: part(scope, &patch, "parent_surface", nest)?, forward });
+        }
+        let found = patches.len() - before;
+        if at == 0 {
+            rows = found;
+        }
+        if found != rows {
+            return Err(ReadError::RaggedNet { row: at, expected: rows, found });
+        }
+    }
+    PatchGrid::new(patches, rows).map(Surface::Composite).ok_or(ReadError::Unbounded { attribute })
+}
+
 fn swept(scope: Scope<'_>, view: &EntityView<'_>) -> Result<Box<Curve>, ReadError> {
     let (name, _) = curve::resolve(scope, view.reference("swept_curve")?, Trims::Follow)?;
-    let curve = curve::read(scope, name).map_err(|source| ReadError::Basis {
-        attribute: "swept_curve",
-        name,
-        entity: scope.file.instance(name).map(entity_name).unwrap_or_default(),
-        source: Box::new(source),
-    })?;
+    let curve = curve::read(scope, name).map_err(|source| within(scope, "swept_curve", name, source))?;
     Ok(Box::new(curve))
 }
 

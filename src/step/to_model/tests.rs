@@ -1,5 +1,7 @@
 //! Each entity form from a snippet; expected values are the snippet's own numbers or closed forms.
 
+mod forms;
+
 use std::f64::consts::PI;
 
 use super::*;
@@ -10,7 +12,7 @@ use crate::math::{Point3, Vector3};
 use crate::model::{Inventory, Origin};
 use crate::source::Source;
 
-fn read(data: &str) -> (Model, Vec<Diagnostic>) {
+pub(super) fn read(data: &str) -> (Model, Vec<Diagnostic>) {
     let text = format!(
         "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n\
          FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;\nDATA;\n{data}\nENDSEC;\nEND-ISO-10303-21;\n"
@@ -22,7 +24,7 @@ fn read(data: &str) -> (Model, Vec<Diagnostic>) {
 }
 
 /// Context `#900`: millimetres, degrees, uncertainty 0.001.
-const DEGREES: &str = "
+pub(super) const DEGREES: &str = "
 #900=(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((#905))
 GLOBAL_UNIT_ASSIGNED_CONTEXT((#901,#902))REPRESENTATION_CONTEXT('',''));
 #901=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));
@@ -33,7 +35,7 @@ GLOBAL_UNIT_ASSIGNED_CONTEXT((#901,#902))REPRESENTATION_CONTEXT('',''));
 #906=DIMENSIONAL_EXPONENTS(0.,0.,0.,0.,0.,0.,0.);";
 
 /// A surface model with one face on `#100`, bounded by one edge on `#200` from (1, 0, 0) back to itself.
-const FACE: &str = "
+pub(super) const FACE: &str = "
 #1=SHAPE_REPRESENTATION('',(#2),#900);
 #2=SHELL_BASED_SURFACE_MODEL('skin',(#3));
 #3=OPEN_SHELL('',(#4));
@@ -49,8 +51,8 @@ const FACE: &str = "
 #13=DIRECTION('',(0.,0.,2.));
 #14=DIRECTION('',(1.,0.,0.));";
 
-const CIRCLE: &str = "#200=CIRCLE('',#11,1.);";
-const PLANE: &str = "#100=PLANE('',#11);";
+pub(super) const CIRCLE: &str = "#200=CIRCLE('',#11,1.);";
+pub(super) const PLANE: &str = "#100=PLANE('',#11);";
 
 /// The face's surface for a record `#100`, and every diagnostic.
 fn surface(records: &str) -> (Carried<Surface>, Vec<Diagnostic>) {
@@ -249,7 +251,10 @@ fn trimmed_curves_of_the_same_sense_stand_for_their_basis() {
         )
     };
     assert!(matches!(curve(&trimmed(".T.")).0.read(), Some(Curve::Circle { .. })));
-    assert_eq!(refused(&curve(&trimmed(".F.")).0), "not read yet");
+    // Backwards from 0° to 90° is three quarters of the turn.
+    let backward = curve(&trimmed(".F.")).0;
+    let (start, end) = backward.read().expect("kept as it is").domain();
+    assert!((end - start - 1.5 * PI).abs() < 1e-12);
 }
 
 #[test]
@@ -305,7 +310,10 @@ fn bad_data_are_carried_with_the_exact_reason() {
         refused(&surface("#100=SPHERICAL_SURFACE('',#11,$);").0),
         "radius is `$`, expected a finite number"
     );
-    assert_eq!(refused(&surface("#100=OFFSET_SURFACE('',#11,1.,.F.);").0), "not read yet");
+    assert_eq!(
+        refused(&surface("#100=OFFSET_SURFACE('',#11,1.,.F.);").0),
+        "basis_surface #11 AXIS2_PLACEMENT_3D: #11 is AXIS2_PLACEMENT_3D, expected SURFACE"
+    );
     assert_eq!(refused(&surface("#100=!MINE(1);").0), "not read yet");
     let (found, sink) = surface("");
     assert_eq!(refused(&found), "#100 is not in the file");
@@ -411,7 +419,7 @@ fn colours_layers_and_products_reach_the_face() {
     let face = model.brep.faces.ids().next().expect("one face");
     let rgb = |colour: Option<crate::model::Colour>| colour.map(|c| [c.red, c.green, c.blue]);
     assert_eq!(rgb(model.colour_of(face)), Some([1.0, 0.0, 0.0]));
-    assert_eq!(rgb(model.bodies[model.body_of(face)].own.colour), Some([0.25, 0.5, 1.0]));
+    assert_eq!(rgb(model.bodies[model.body_of(face)].own.appearance.colour), Some([0.25, 0.5, 1.0]));
     assert_eq!(model.layers_of(face).collect::<Vec<_>>(), ["12", "12"]);
     assert_eq!(model.product_of(face).map(|p| p.name.as_str()), Some("Tür"));
 }
@@ -455,4 +463,104 @@ fn a_shell_without_a_body_is_a_body_and_said_so() {
         read(&[FACE, CIRCLE, PLANE, DEGREES].concat().replace("SHELL_BASED_SURFACE_MODEL", "!OTHER"));
     assert_eq!(model.brep.faces.len(), 1);
     assert!(sink.iter().any(|d| d.code == "step.loose-body"), "{sink:?}");
+}
+
+/// The only diagnostic of a file whose context records are changed.
+fn told(from: &str, to: &str) -> Vec<(&'static str, String, String)> {
+    let context = DEGREES.replace(from, to);
+    assert_ne!(context, DEGREES, "{from} stands in the context");
+    let (_, sink) = read(&[FACE, CIRCLE, PLANE, &context].concat());
+    assert!(sink.iter().all(|fact| fact.span.is_some()), "every fact has a line: {sink:?}");
+    sink.into_iter().map(|fact| (fact.code, fact.entity.unwrap_or_default(), fact.message)).collect()
+}
+
+#[test]
+fn an_uncertainty_that_is_no_positive_length_is_told() {
+    let cases = [
+        ("0.", "value_component is 0, expected a positive number"),
+        ("-1.E-3", "value_component is -0.001, expected a positive number"),
+        ("1.E999", "value_component is a real out of range, expected a finite number"),
+        ("'small'", "value_component is a string, expected a finite number"),
+    ];
+    for (value, message) in cases {
+        let told = told("LENGTH_MEASURE(1.E-3)", &format!("LENGTH_MEASURE({value})"));
+        let [(code, entity, text)] = told.as_slice() else { panic!("{value}: {told:?}") };
+        assert_eq!((*code, entity.as_str()), ("step.bad-uncertainty", "#905"));
+        assert!(text.contains(message), "{value}: {text}");
+    }
+    let told = told("CONTEXT((#905))", "CONTEXT((#888))");
+    assert_eq!((told[0].0, told[0].1.as_str()), ("step.bad-uncertainty", "#900"), "{told:?}");
+}
+
+#[test]
+fn units_that_are_misspelt_or_missing_are_told() {
+    let cases = [
+        (".METRE.", ".METRR.", "#901", "`METRR`", "no unit of length: millimetre"),
+        (".METRE.", ".GRAM.", "#901", "`GRAM`", "no unit of length: millimetre"),
+        (".MILLI.", ".MILI.", "#901", "`MILI`", "no unit of length: millimetre"),
+        (".RADIAN.", ".RADIANT.", "#902", "`RADIANT`", "no unit of plane angle: radian"),
+        ("(0.0174532925199433)", "(0.)", "#902", "conversion_factor is 0", "no unit of plane angle: radian"),
+        ("(0.0174532925199433)", "(-1.)", "#902", "conversion_factor is -1", "no unit of plane angle"),
+        ("((#901,#902))", "((#777,#902))", "#900", "#777 is not in the file", "no unit of length"),
+    ];
+    for (from, to, entity, said, assumed) in cases {
+        let told = told(from, to);
+        let unit = told.iter().find(|fact| fact.0 == "step.unknown-unit").expect("the unit is told");
+        assert!(unit.1 == entity && unit.2.contains(said), "{to}: {told:?}");
+        let missing = told.iter().find(|fact| fact.0 == "step.missing-unit").expect("the assumption is told");
+        assert!(missing.1 == "#900" && missing.2.contains(assumed), "{to}: {told:?}");
+    }
+    let told = told("((#901,#902))", "((#902))");
+    assert!(matches!(told.as_slice(), [("step.missing-unit", entity, _)] if entity == "#900"), "{told:?}");
+}
+
+#[test]
+fn what_a_header_lacks_is_told() {
+    let records = [
+        ("FILE_DESCRIPTION", "FILE_DESCRIPTION((''),'2;1');"),
+        ("FILE_NAME", "FILE_NAME('','',(''),(''),'','','');"),
+        ("FILE_SCHEMA", "FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));"),
+    ];
+    let told = |header: &str| {
+        let text = format!("ISO-10303-21;\nHEADER;{header}ENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n");
+        let mut sink: Vec<Diagnostic> = Vec::new();
+        let file = ExchangeStructure::parse(Source::new(text.into_bytes()).expect("small"), &mut sink);
+        to_model(&file, &mut sink);
+        assert!(sink.iter().all(|fact| fact.code == "step.bad-header" && fact.span.is_some()), "{sink:?}");
+        sink.into_iter().map(|fact| (fact.entity.unwrap_or_default(), fact.message)).collect::<Vec<_>>()
+    };
+    let whole = records.map(|(_, record)| record).concat();
+    assert_eq!(told(&whole), []);
+    for (keyword, record) in records {
+        let told = told(&whole.replace(record, ""));
+        assert!(
+            matches!(told.as_slice(), [(entity, text)] if entity == keyword && text.contains("no ")),
+            "{told:?}"
+        );
+    }
+    let cases =
+        [("(('AUTOMOTIVE_DESIGN'))", "(())", "no schema"), (",'2;1'", "", "1 attributes, expected 2")];
+    for (from, to, message) in cases {
+        let told = told(&whole.replace(from, to));
+        assert!(matches!(told.as_slice(), [(_, text)] if text.contains(message)), "{told:?}");
+    }
+}
+
+#[test]
+fn a_face_that_its_shell_lists_twice_counts_once() {
+    let (model, sink) = read(&[FACE, CIRCLE, PLANE, DEGREES].concat().replace("('',(#4))", "('',(#4,#4))"));
+    assert_eq!(model.brep.faces.len(), 1);
+    assert!(
+        matches!(sink.as_slice(), [fact] if fact.code == "step.repeated-face"
+        && fact.entity.as_deref() == Some("#3") && fact.message.contains("#4")),
+        "{sink:?}"
+    );
+}
+
+#[test]
+fn numbers_beyond_the_finite_ones_have_a_code_of_their_own() {
+    for (from, to) in [("(0.,0.,0.)", "(0.,1.E999,0.)"), ("#11,1.)", "#11,1.E999)")] {
+        let (_, sink) = read(&[FACE, CIRCLE, PLANE, DEGREES].concat().replacen(from, to, 1));
+        assert!(sink.iter().any(|fact| fact.code == "step.not-finite"), "{to}: {sink:?}");
+    }
 }

@@ -3,7 +3,7 @@
 //! Each record gives one element, however many others share it. An element that cannot be built keeps
 //! its place where it can: a face with a broken bound stays, but counts as unread.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::code::ModelCode;
 use super::curve::{self, Trims};
@@ -427,8 +427,16 @@ impl<'a, 's> Builder<'a, 's> {
         self.shells.insert(view.name(), id);
         match view.references("cfs_faces") {
             Ok(members) => {
-                let faces = members.filter_map(|member| self.face(member, id)).collect();
-                self.brep.shells[id].faces = faces;
+                let mut listed = HashSet::new();
+                for member in members {
+                    if listed.insert(member) {
+                        let face = self.face(member, id);
+                        self.brep.shells[id].faces.extend(face);
+                    } else {
+                        let message = format!("lists the face {member} more than once; it counts once");
+                        self.report(ModelCode::RepeatedFace, view.name(), message);
+                    }
+                }
             }
             Err(error) => self.report_topology(view.name(), &error.into()),
         }

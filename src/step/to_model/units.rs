@@ -69,7 +69,9 @@ fn read(scope: Scope<'_>, name: InstanceName, sink: &mut dyn Sink) -> Context {
             Ok(Unit::Angle(unit)) => angle = angle.or(Some(unit)),
             Ok(Unit::Other) => {}
             Err(error) => {
-                sink.report(ModelCode::UnknownUnit.at(scope.file, unit, format!("unit: {error}")));
+                // A unit that is not in the file has no line: its context has one.
+                let at = if scope.instance(unit).is_ok() { unit } else { name };
+                sink.report(ModelCode::UnknownUnit.at(scope.file, at, format!("unit: {error}")));
             }
         }
     }
@@ -88,23 +90,61 @@ fn read(scope: Scope<'_>, name: InstanceName, sink: &mut dyn Sink) -> Context {
         missing("plane angle: radian is assumed");
         AngleUnit::radian()
     });
-    let uncertainty = view.and_then(|view| uncertainty(scope, &view, &length));
+    let uncertainty = view.and_then(|view| uncertainty(scope, &view, &length, sink));
     Context { length, angle, uncertainty }
 }
 
-/// The first uncertainty that is a positive length, counted in the context's own unit.
-fn uncertainty(scope: Scope<'_>, context: &EntityView<'_>, length: &LengthUnit) -> Option<Tolerance> {
-    context.references("uncertainty").ok()?.find_map(|name| {
-        let view = scope.view(name).ok()?;
-        let value = view.real("value_component").ok()?;
-        let Ok(Unit::Length(unit)) = unit_of(scope, view.reference("unit_component").ok()?) else {
-            return None;
-        };
-        // Equal units must not round: most files count the uncertainty as they count lengths.
-        let factor =
-            if unit.metres.to_bits() == length.metres.to_bits() { 1.0 } else { unit.metres / length.metres };
-        Some(value * factor).filter(|v| v.is_finite() && *v > 0.0).map(Tolerance)
-    })
+/// The first uncertainty that is a positive length, counted in the context's own unit. Every other one that
+/// should be a length is reported.
+fn uncertainty(
+    scope: Scope<'_>,
+    context: &EntityView<'_>,
+    length: &LengthUnit,
+    sink: &mut dyn Sink,
+) -> Option<Tolerance> {
+    let mut found = None;
+    for name in context.references("uncertainty").ok()? {
+        match one_uncertainty(scope, name, length) {
+            Ok(tolerance) => found = found.or(tolerance),
+            Err(error) => {
+                let at = if scope.instance(name).is_ok() { name } else { context.name() };
+                let message = format!("uncertainty: {error}; distances are judged as if it were not there");
+                sink.report(ModelCode::BadUncertainty.at(scope.file, at, message));
+            }
+        }
+    }
+    found
+}
+
+/// An uncertainty of length; `None` for one of another quantity.
+fn one_uncertainty(
+    scope: Scope<'_>,
+    name: InstanceName,
+    length: &LengthUnit,
+) -> Result<Option<Tolerance>, ReadError> {
+    let view = scope.view_of(name, Entity::MeasureWithUnit)?;
+    let unit = match unit_of(scope, view.reference("unit_component")?)? {
+        Unit::Length(unit) => unit,
+        Unit::Angle(_) | Unit::Other => return Ok(None),
+    };
+    let value = view.real("value_component")?;
+    // Equal units must not round: most files count the uncertainty as they count lengths.
+    let factor =
+        if unit.metres.to_bits() == length.metres.to_bits() { 1.0 } else { unit.metres / length.metres };
+    let counted = value * factor;
+    if counted.is_finite() && counted > 0.0 {
+        return Ok(Some(Tolerance(counted)));
+    }
+    Err(ReadError::NotPositive { attribute: "value_component", value })
+}
+
+/// Name of a unit of length or angle; empty for any other.
+pub(super) fn name_of(scope: Scope<'_>, unit: InstanceName) -> String {
+    match unit_of(scope, unit) {
+        Ok(Unit::Length(unit)) => unit.name,
+        Ok(Unit::Angle(unit)) => unit.name,
+        Ok(Unit::Other) | Err(_) => String::new(),
+    }
 }
 
 fn unit_of(scope: Scope<'_>, name: InstanceName) -> Result<Unit, ReadError> {
@@ -113,7 +153,7 @@ fn unit_of(scope: Scope<'_>, name: InstanceName) -> Result<Unit, ReadError> {
     if !is_length && !view.is(Entity::PlaneAngleUnit) {
         return Ok(Unit::Other);
     }
-    let (factor, written) = size(scope, name)?;
+    let (factor, written) = size(scope, name, if is_length { b"METRE" } else { b"RADIAN" })?;
     Ok(if is_length {
         Unit::Length(LengthUnit { name: length_name(factor, &written), metres: factor })
     } else {
@@ -121,14 +161,15 @@ fn unit_of(scope: Scope<'_>, name: InstanceName) -> Result<Unit, ReadError> {
     })
 }
 
-/// How many metres or radians a unit is, and the name that the file gives it.
-fn size(scope: Scope<'_>, name: InstanceName) -> Result<(f64, String), ReadError> {
+/// How many `base` units, metres or radians, a unit is, and the name that the file gives it.
+fn size(scope: Scope<'_>, name: InstanceName, base: &'static [u8]) -> Result<(f64, String), ReadError> {
     let mut factor = 1.0;
     let mut written = String::new();
     let mut current = name;
     for _ in 0..MAX_NESTED_UNITS {
         let view = scope.view_of(current, Entity::NamedUnit)?;
         if view.is(Entity::SiUnit) {
+            check_name(&view, base)?;
             return Ok((checked(factor * si_prefix(&view)?)?, written));
         }
         if !view.is(Entity::ConversionBasedUnit) {
@@ -144,6 +185,19 @@ fn size(scope: Scope<'_>, name: InstanceName) -> Result<(f64, String), ReadError
         current = measure.reference("unit_component")?;
     }
     Err(ReadError::Cycle(name))
+}
+
+/// Refuses an SI unit of another name: one that is misspelt, or that measures something else.
+fn check_name(unit: &EntityView<'_>, base: &'static [u8]) -> Result<(), ReadError> {
+    // A complex unit has a `name` in several of its parts: only that of the SI unit counts.
+    let record = unit.instance().records().find(|record| record.is(b"SI_UNIT"));
+    let name = record.and_then(|record| record.parameters().last());
+    let name = name.as_ref().and_then(|name| name.as_enum()).unwrap_or_default();
+    if name.eq_ignore_ascii_case(base) {
+        return Ok(());
+    }
+    let text = |word: &[u8]| String::from_utf8_lossy(word).into_owned();
+    Err(ReadError::UnitName { found: text(name), expected: text(base) })
 }
 
 fn checked(factor: f64) -> Result<f64, ReadError> {
@@ -188,7 +242,10 @@ const PREFIXES: [(&[u8], f64); 16] = [
 fn si_prefix(unit: &EntityView<'_>) -> Result<f64, ReadError> {
     let Some(prefix) = unit.get("prefix").as_ref().and_then(|p| p.as_enum()) else { return Ok(1.0) };
     let known = PREFIXES.iter().find(|(name, _)| name.eq_ignore_ascii_case(prefix));
-    known.map(|(_, factor)| *factor).ok_or(ReadError::NotReadYet)
+    known.map(|(_, factor)| *factor).ok_or_else(|| ReadError::UnitName {
+        found: String::from_utf8_lossy(prefix).into_owned(),
+        expected: "a prefix from ATTO to EXA".to_owned(),
+    })
 }
 
 /// Relative difference below which a unit counts as the one of a common name: files write the inch with

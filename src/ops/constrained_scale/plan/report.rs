@@ -8,7 +8,7 @@ use super::scope::face_name;
 use super::stretch::{SolvedGroup, Stretched};
 use crate::model::Model;
 use crate::ops::OperationError;
-use crate::ops::constrained_scale::measures::{REPORT_SAMPLES, RigidDeviation, quality, rigid_deviation};
+use crate::ops::constrained_scale::measures::{MotionDeviation, REPORT_SAMPLES, motion_deviation, quality};
 
 /// Figures of all faces with held loops.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -66,11 +66,14 @@ pub struct LoopMeasures {
     pub held: String,
     /// Its face.
     pub face: String,
-    /// Greatest deviation from the rigid copy, relative to the loop's extent.
+    /// Greatest deviation from the motion that the mode imposes, relative to the loop's extent.
+    pub motion_deviation: f64,
+    /// Greatest deviation from a rigid copy, relative to the loop's extent: that of the motion where it is rigid, and
+    /// of the best fit where `mode = "axes"` lets the loop scale.
     pub rigid_deviation: f64,
 }
 
-/// Deviation from the rigid copy above which the result is thrown away: a bug of ours.
+/// Deviation from the imposed motion above which the result is thrown away: a bug of ours.
 const RIGIDITY: f64 = 1e-12;
 
 /// Measures all stretched faces and held loops.
@@ -98,13 +101,13 @@ pub(super) fn measure(model: &Model, held: &Held, stretched: &Stretched) -> Resu
             let (id, contour, _) = &held.bases[&face].held[k];
             let before = spline_of(model, face).expect("a face with held loops is a B-spline");
             let after = &stretched.faces[&face].surface;
-            let deviation = rigid_deviation(before, after, &contour.points, &group.motion);
+            let deviation = motion_deviation(before, after, &contour.points, &group.motion);
             let (face, held) = (face_name(model, face), model.origins.loops[*id].to_string());
-            let RigidDeviation { relative, rounding } = deviation;
+            let MotionDeviation { rigid, relative, rounding } = deviation;
             if relative.is_nan() || relative > RIGIDITY + rounding {
                 return Err(OperationError::RigidityLost { face, held, deviation: relative });
             }
-            measured.push(LoopMeasures { held, face, rigid_deviation: relative });
+            measured.push(LoopMeasures { held, face, motion_deviation: relative, rigid_deviation: rigid });
         }
         groups.push(GroupMeasures {
             loops: measured,

@@ -1,7 +1,8 @@
 //! Rigid copies of curves and surfaces: kind, radii and angles stay bit for bit, only places and axes move.
 
-use crate::geometry::{Curve, Surface};
+use crate::geometry::{Curve, Surface, Trimmed};
 use crate::math::{Affine, Frame};
+use std::convert::Infallible;
 
 /// A frame carried by a rigid motion; a motion without rotation leaves its axes as they are.
 fn frame(frame: &Frame, motion: &Affine) -> Frame {
@@ -20,6 +21,28 @@ pub(super) fn moved_curve(curve: &Curve, motion: &Affine) -> Curve {
             Curve::Ellipse { frame: frame(f, motion), semi_axis_1: *semi_axis_1, semi_axis_2: *semi_axis_2 }
         }
         Curve::Nurbs(curve) => Curve::Nurbs(curve.transformed(motion)),
+        Curve::Polyline(curve) => Curve::Polyline(curve.transformed(motion)),
+        Curve::Parabola { frame: f, focal_distance } => {
+            Curve::Parabola { frame: frame(f, motion), focal_distance: *focal_distance }
+        }
+        Curve::Hyperbola { frame: f, semi_axis, semi_imaginary_axis } => Curve::Hyperbola {
+            frame: frame(f, motion),
+            semi_axis: *semi_axis,
+            semi_imaginary_axis: *semi_imaginary_axis,
+        },
+        Curve::Trimmed(piece) => {
+            let basis = Box::new(moved_curve(&piece.basis, motion));
+            Curve::Trimmed(Trimmed { basis, ..piece.clone() })
+        }
+        Curve::Composite(whole) => {
+            let moved = whole.try_map(|curve| Ok::<_, Infallible>(moved_curve(curve, motion)));
+            Curve::Composite(moved.unwrap_or_else(|never| match never {}))
+        }
+        Curve::Offset { basis, distance, direction } => Curve::Offset {
+            basis: Box::new(moved_curve(basis, motion)),
+            distance: *distance,
+            direction: motion.vector(direction),
+        },
     }
 }
 
@@ -47,5 +70,21 @@ pub(super) fn moved_surface(surface: &Surface, motion: &Affine) -> Surface {
             Surface::Revolution { curve: Box::new(moved_curve(curve, motion)), frame: frame(f, motion) }
         }
         Surface::Nurbs(surface) => Surface::Nurbs(surface.transformed(motion)),
+        Surface::Offset { basis, distance } => {
+            Surface::Offset { basis: Box::new(moved_surface(basis, motion)), distance: *distance }
+        }
+        Surface::Trimmed { basis, u, v, forward } => Surface::Trimmed {
+            basis: Box::new(moved_surface(basis, motion)),
+            u: *u,
+            v: *v,
+            forward: *forward,
+        },
+        Surface::CurveBounded { basis } => {
+            Surface::CurveBounded { basis: Box::new(moved_surface(basis, motion)) }
+        }
+        Surface::Composite(grid) => {
+            let moved = grid.try_map(|surface| Ok::<_, Infallible>(moved_surface(surface, motion)));
+            Surface::Composite(moved.unwrap_or_else(|never| match never {}))
+        }
     }
 }

@@ -1,0 +1,125 @@
+//! Odd and broken files of the corpus: each ends as the corpus's own table says.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::{Fixture, support};
+
+/// How one file must end.
+struct Expected {
+    /// Its file.
+    name: &'static str,
+    /// The word of the corpus's table.
+    word: &'static str,
+    /// Exit code of `inspect` and of `check`.
+    read: u8,
+    /// Exit code of `convert` to the same format.
+    convert: u8,
+    /// What standard error must say; empty when it must say nothing.
+    says: &'static str,
+}
+
+/// A row without a message.
+const fn silent(name: &'static str) -> Expected {
+    Expected { name, word: "read", read: 0, convert: 0, says: "" }
+}
+
+/// A row of a file that is read with a remark.
+const fn remark(name: &'static str, word: &'static str, says: &'static str) -> Expected {
+    Expected { name, word, read: 0, convert: 0, says }
+}
+
+/// A row of a file of which a part is not understood: a copy is whole, everything else is not.
+const fn partly(name: &'static str, word: &'static str, says: &'static str) -> Expected {
+    Expected { name, word, read: 1, convert: 0, says }
+}
+
+/// A row of a file that is not read.
+const fn refused(name: &'static str, word: &'static str, says: &'static str) -> Expected {
+    Expected { name, word, read: 3, convert: 3, says }
+}
+
+const TABLE: [Expected; 33] = [
+    // Containers are not opened yet: they must say so.
+    refused("gz.stpZ", "read", "gzip files are not read yet"),
+    refused("zip.stpZ", "read", "zip files are not read yet"),
+    silent("cr_only.stp"),
+    silent("crlf_mixed.stp"),
+    silent("one_line.stp"),
+    silent("token_per_line.stp"),
+    silent("bom.stp"),
+    remark("leading_junk.stp", "diagnose", "warning[step.leading-junk]"),
+    silent("trailing_nul.stp"),
+    remark("no_end.stp", "read+warn", "warning[step.missing-end]"),
+    refused("truncated.stp", "refuse", "error[step.truncated]"),
+    silent("comments_everywhere.stp"),
+    silent("reversed_order.stp"),
+    silent("huge_ids.stp"),
+    silent("zero_padded_ids.stp"),
+    partly("duplicate_id.stp", "diagnose", "error[step.duplicate-instance]: #6 "),
+    silent("two_data_sections.stp"),
+    silent("ed3_anchor_reference.stp"),
+    silent("user_defined_entity.stp"),
+    remark("scope.stp", "read+warn", "warning[step.scope-structure]"),
+    silent("reals_odd.stp"),
+    remark("reals_lower_e.stp", "read+warn", "warning[step.lower-case-exponent]"),
+    remark("ints_for_reals.stp", "read+warn", "warning[step.integer-for-real]"),
+    remark("lower_keywords.stp", "diagnose", "warning[step.lower-case-keyword]"),
+    silent("strings_encoded.stp"),
+    remark("strings_latin1.stp", "read+warn", "warning[step.raw-string]"),
+    remark("strings_gbk.stp", "read+warn", "warning[step.raw-string]"),
+    silent("strings_utf8.stp"),
+    silent("inch_lowercase.stp"),
+    refused("cartesian_nan.stp", "refuse", "#12 has the coordinate 1.E400"),
+    partly("bad_mults.stp", "refuse-face", "error[step.bad-geometry]: #56"),
+    partly("dangling_ref.stp", "diagnose", "error[step.unresolved-reference]: #17: refers to #888888"),
+    partly("self_ref.stp", "diagnose", "error[step.bad-topology]: #18"),
+];
+
+fn ends(said: &str, code: u8) -> bool {
+    said.starts_with(&format!("exit code: {code}\n"))
+}
+
+fn stderr(said: &str) -> &str {
+    said.split_once("--- stderr\n").map_or("", |(_, rest)| rest)
+}
+
+#[test]
+fn every_odd_file_ends_as_its_table_says() {
+    let Some(folder) = support::corpus().map(|corpus| corpus.join("patho")) else { return };
+    let manifest = std::fs::read_to_string(folder.join("MANIFEST.tsv")).expect("the corpus has its table");
+    let words: BTreeMap<&str, &str> = manifest
+        .lines()
+        .skip(1)
+        .filter(|line| !line.contains(".igs\t"))
+        .filter_map(|line| Some((line.split('\t').next()?, line.split('\t').nth(2)?)))
+        .collect();
+    let table: BTreeMap<&str, &str> = TABLE.iter().map(|row| (row.name, row.word)).collect();
+    assert_eq!(table, words, "the table here and that of the corpus");
+    for row in &TABLE {
+        holds(row, &folder);
+    }
+}
+
+fn holds(row: &Expected, folder: &Path) {
+    let bytes = std::fs::read(folder.join(row.name)).expect("a file of the table");
+    let job = "version = 1\ninputs = [\"in/*\"]\noutput = \"out/{stem}.stp\"\n\
+               [[operation]]\nkind = \"constrained_scale\"\nfactors = [2, 2, 2]\n";
+    let input = format!("in/{}", row.name);
+    let fixture = Fixture::new().file(&input, &bytes).file("job.toml", job);
+    for command in ["inspect", "check"] {
+        let said = fixture.run(&[command, &input]);
+        assert!(ends(&said, row.read), "{command} {}: {said}", row.name);
+        let told = stderr(&said);
+        assert!(told.contains(row.says) && told.is_empty() == row.says.is_empty(), "{command}: {said}");
+    }
+    let said = fixture.run(&["convert", &input, "-o", "same.stp"]);
+    assert!(ends(&said, row.convert), "convert {}: {said}", row.name);
+    let copy = std::fs::read(fixture.path("same.stp")).ok();
+    assert_eq!(copy.as_deref(), (row.convert == 0).then_some(bytes.as_slice()), "{}", row.name);
+    if row.read != 0 {
+        let said = fixture.run(&["run", "job.toml"]);
+        assert!(ends(&said, 3), "run {}: {said}", row.name);
+        assert!(!fixture.path("out").exists(), "{}: a refused part leaves nothing", row.name);
+    }
+}
