@@ -51,8 +51,10 @@ fn impossible_settings_are_refused() {
     let mixed = Settings { existing: Existing::Stronger, method: Some(Method::Fit), ..base.clone() };
     assert_eq!(code(&mixed), "paste.method-cannot");
     assert_eq!(code(&Settings { limit: 100, ..base.clone() }), "paste.net-too-large");
+    let coarse = super::parts::part([3, 3], [6, 6], super::parts::bump);
     let precise = Settings { method: Some(Method::Fit), angle: 0.3, ..Settings::new(1e-13) };
-    assert_eq!(code(&precise), "paste.fit-tolerance-not-reached");
+    let refused = pasted(&coarse, &plane, 0.42, &precise).unwrap_err();
+    assert_eq!(refused.code(), "paste.fit-tolerance-not-reached");
 }
 
 #[test]

@@ -148,6 +148,46 @@ pub enum PasteError {
         /// Unknowns.
         unknowns: usize,
     },
+    /// The face's surface is of a kind that cannot give or take a feature.
+    #[error("the {side} face {face} lies on a {kind}; {expected}")]
+    SurfaceKind {
+        /// `source`, `target`.
+        side: &'static str,
+        /// Name of the face.
+        face: String,
+        /// Kind of its surface.
+        kind: String,
+        /// What would do.
+        expected: &'static str,
+    },
+    /// The source face has no such loop.
+    #[error("the source face {face} has no {wanted}")]
+    NoSuchLoop {
+        /// Name of the face.
+        face: String,
+        /// What was asked for.
+        wanted: String,
+    },
+    /// A place is not on the target face.
+    #[error(
+        "place ({:.6}, {:.6}, {:.6}) is not on the target face {face}: {reason}", place[0], place[1], place[2]
+    )]
+    PlaceOffFace {
+        /// Name of the face.
+        face: String,
+        /// The place.
+        place: [f64; 3],
+        /// Lower-case fragment.
+        reason: String,
+    },
+    /// The features of two places would overlap.
+    #[error("places {first} and {second} are so near that their features overlap")]
+    PlacesOverlap {
+        /// Index of a place, from 0.
+        first: usize,
+        /// Index of the other.
+        second: usize,
+    },
     /// The pasted region meets a loop of the target face.
     #[error(
         "the pasted region meets loop {held} of the target face: move the feature, or set `loops = \"protect\"`"
@@ -181,6 +221,10 @@ impl PasteError {
             Self::FitToleranceNotReached { .. } => "paste.fit-tolerance-not-reached",
             Self::NetTooLarge { .. } => "paste.net-too-large",
             Self::SingularSystem { .. } => "paste.singular-system",
+            Self::SurfaceKind { .. } => "paste.surface-kind",
+            Self::NoSuchLoop { .. } => "paste.no-such-loop",
+            Self::PlaceOffFace { .. } => "paste.place-off-face",
+            Self::PlacesOverlap { .. } => "paste.places-overlap",
             Self::TargetLoopInRegion { .. } => "paste.target-loop-in-region",
         }
     }

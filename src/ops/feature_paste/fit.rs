@@ -233,18 +233,9 @@ struct Fitted {
 }
 
 /// Control points that act inside the image of the window alone, off the border rows.
-fn free_points(refined: &NurbsSurface, cells: &Mask, grid: &CellGrid, margin: usize) -> Mask {
+fn free_points(cells: &Mask, grid: &CellGrid, margin: usize) -> Mask {
     let own = grid.control_points(cells).without(&grid.control_points(&cells.complement()));
-    let (rows, columns) = own.shape();
-    let mut free = Mask::empty(rows, columns);
-    for at in own.indices() {
-        let (i, j) = (at / columns, at % columns);
-        if i >= margin && i + margin < rows && j >= margin && j + margin < columns {
-            free.insert(i, j);
-        }
-    }
-    debug_assert_eq!(free.shape(), refined.shape());
-    free
+    own.off_border(margin)
 }
 
 fn fit(
@@ -258,7 +249,7 @@ fn fit(
     let grid = CellGrid::new(refined.knots_u(), refined.knots_v());
     let mut cells = grid.met_by(&polygon);
     cells.unite(&grid.inside(&polygon));
-    let free = free_points(refined, &cells, &grid, settings.margin);
+    let free = free_points(&cells, &grid, settings.margin);
     if free.count() == 0 {
         return Err(PasteError::RegionTooSmall { rows: 0, columns: 0, needed: 1 });
     }

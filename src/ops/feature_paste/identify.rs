@@ -110,7 +110,8 @@ pub fn refine_for_region(
     let mut source = source.clone();
     let mut found = (0, 0);
     for _ in 0..MAX_ROUNDS {
-        let sets = identify(&source, contour, rule);
+        let mut sets = identify(&source, contour, rule);
+        sets.own = sets.own.off_border(1);
         found = occupied(&sets.own);
         if found.0 >= needed && found.1 >= needed {
             return Ok((source, sets));

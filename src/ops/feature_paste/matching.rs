@@ -146,7 +146,7 @@ pub fn matched(
         let knots = [direction(&source, k), direction(&target, k)];
         offset[k] = index_offset(knots, maps[k], lines[k].window).ok_or_else(small)?;
     }
-    let found = identify(&source, contour, settings.rule).own;
+    let found = identify(&source, contour, settings.rule).own.off_border(1);
     let (own, partners) = with_partners((&source, &target), &found, offset, maps, (settings.margin, reach));
     if own.count() == 0 {
         return Err(small());

@@ -20,6 +20,7 @@ pub mod identify;
 mod laplacian;
 mod matched_paste;
 pub mod matching;
+pub mod plan;
 pub mod settings;
 
 pub use contour::{Plane, project_contour};

@@ -69,6 +69,17 @@ impl Mask {
         Self { bits, ..*self }
     }
 
+    /// The places that are not among the first and last `rows` rows and columns.
+    #[must_use]
+    pub fn off_border(&self, rows: usize) -> Self {
+        let mut out = Self::empty(self.rows, self.columns);
+        for at in self.indices() {
+            let (i, j) = (at / self.columns, at % self.columns);
+            out.bits[at] = i >= rows && i + rows < self.rows && j >= rows && j + rows < self.columns;
+        }
+        out
+    }
+
     /// First and last row, first and last column of the places; `None` for the empty set.
     #[must_use]
     pub fn extent(&self) -> Option<[(usize, usize); 2]> {

@@ -98,8 +98,17 @@ const LENGTH_SAMPLES: usize = 9;
 /// # Errors
 /// [`OperationError::NoParameterLoops`].
 pub fn lay_out(model: &Model, face: FaceId) -> Result<Layout, OperationError> {
+    let reason = || "it is no B-spline surface".to_owned();
+    let fault = || OperationError::NoParameterLoops { face: face_name(model, face), reason: reason() };
+    lay_out_on(model, face, spline_of(model, face).ok_or_else(fault)?)
+}
+
+/// The loops of a face in the parameters of a B-spline surface that has the same parameters as the face's own.
+///
+/// # Errors
+/// [`OperationError::NoParameterLoops`].
+pub fn lay_out_on(model: &Model, face: FaceId, surface: &NurbsSurface) -> Result<Layout, OperationError> {
     let fault = |reason: String| OperationError::NoParameterLoops { face: face_name(model, face), reason };
-    let surface = spline_of(model, face).ok_or_else(|| fault("it is no B-spline surface".to_owned()))?;
     let (du, dv) = surface.domain();
     let range = [du.1 - du.0, dv.1 - dv.0];
     let spans = [surface.knots_u(), surface.knots_v()].map(|k| k.distinct().0.len() - 1);
