@@ -55,6 +55,7 @@ pub(super) fn paste(
                 map,
                 method: Method::Fit,
                 lost: 0,
+                lost_detail: 0.0,
                 fit_error: Some(fitted.error),
                 offset: None,
             });
@@ -174,6 +175,9 @@ impl<'a> Field<'a> {
             let step = step / f64::from(1 << level);
             let range = extent(corners, k);
             let knots = if k == 0 { out.knots_u() } else { out.knots_v() };
+            let ends = new_ends(knots, range, step);
+            out = if k == 0 { out.refined_u(&ends)? } else { out.refined_v(&ends)? };
+            let knots = if k == 0 { out.knots_u() } else { out.knots_v() };
             let more = subdivisions(knots, range, step);
             out = if k == 0 { out.refined_u(&more)? } else { out.refined_v(&more)? };
         }
@@ -212,11 +216,19 @@ fn median_span(knots: &KnotVector, (start, end): (f64, f64)) -> f64 {
     }
 }
 
+/// Ends of a range that become knots, so that a long span is not refined beyond it: those farther than a step from
+/// every knot.
+fn new_ends(knots: &KnotVector, (start, end): (f64, f64), step: f64) -> Vec<f64> {
+    let far = |x: &f64| knots.knots().iter().all(|k| (k - x).abs() > step);
+    [start, end].into_iter().filter(far).collect()
+}
+
 /// Knots that cut every span that meets the range into equal parts no longer than `step`.
 fn subdivisions(knots: &KnotVector, (start, end): (f64, f64), step: f64) -> Vec<f64> {
     let (distinct, _) = knots.distinct();
     let mut more = Vec::new();
-    for w in distinct.windows(2).filter(|w| w[1] > start && w[0] < end) {
+    let slack = WHOLE * (end - start);
+    for w in distinct.windows(2).filter(|w| w[1] > start + slack && w[0] < end - slack) {
         let length = w[1] - w[0];
         let parts = (length / step - WHOLE).ceil();
         // The caller refuses nets beyond its limit; a span is never cut into more than a million parts.

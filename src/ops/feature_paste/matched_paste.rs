@@ -2,7 +2,7 @@
 
 use super::PasteError;
 use super::base::{smoothed, with_net};
-use super::block::Block;
+use super::block::{Block, euclidean};
 use super::displacement::displaced;
 use super::identify::{contour_polygon, refine_for_region};
 use super::laplacian::{biharmonic, poisson};
@@ -44,11 +44,15 @@ pub(super) fn paste(
         net[block.places[at]] = point;
     }
     let surface = with_net(&nets.target, net)?;
+    let lost_base = smoothed(&nets.source, &nets.own.union(&nets.lost))?;
+    let off = |at: usize| (euclidean(&nets.source.net()[at]) - euclidean(&lost_base.net()[at])).norm();
+    let lost_detail = nets.lost.indices().map(off).fold(0.0, f64::max);
     Ok(Pasted {
         surface,
         map: nets.parameter_map(feature.anchor, ground.at),
         offset: Some(nets.offset),
-        lost: nets.lost,
+        lost: nets.lost.count(),
+        lost_detail,
         changed: nets.partners,
         refined: nets.target,
         method,

@@ -3,7 +3,7 @@
 
 use super::PasteError;
 use super::identify::{Identified, identify};
-use super::settings::{Ground, ParameterMap, Settings};
+use super::settings::{Ends, Ground, ParameterMap, Settings};
 use crate::geometry::nurbs::{KnotVector, NurbsSurface};
 use crate::ops::net::sampling::{Tangents, steps};
 use crate::ops::net::{Mask, Polygon};
@@ -55,7 +55,7 @@ pub struct Matched {
     /// Lengths of source parameters on the target, per knot unit.
     pub speeds: [f64; 2],
     /// The feature's control points without a partner.
-    pub lost: usize,
+    pub lost: Mask,
 }
 
 impl Matched {
@@ -132,7 +132,11 @@ pub fn matched(
     let mut lines = Vec::with_capacity(2);
     for k in 0..2 {
         let knots = [direction(source, k), direction(target, k)];
-        lines.push(Line::new(knots, maps[k], acting[k], own[k], ["u", "v"][k])?);
+        let mut line = Line::new(knots, maps[k], acting[k], own[k], ["u", "v"][k])?;
+        if settings.ends == Ends::Inserted {
+            line.insert_ends(knots, maps[k]);
+        }
+        lines.push(line);
     }
     let counts = [0, 1].map(|k| direction(target, k).n_basis() + lines[k].into_target.len());
     let points = counts[0].saturating_mul(counts[1]);
@@ -147,12 +151,12 @@ pub fn matched(
         offset[k] = index_offset(knots, maps[k], lines[k].window).ok_or_else(small)?;
     }
     let found = identify(&source, contour, settings.rule).own.off_border(1);
-    let (own, partners) = with_partners((&source, &target), &found, offset, maps, (settings.margin, reach));
+    let (own, partners) = with_partners((&source, &target), &found, offset, maps, (settings, reach));
     if own.count() == 0 {
         return Err(small());
     }
     let speeds = [0, 1].map(|k| settings.scale[k] * on_source[k]);
-    let lost = found.count() - own.count();
+    let lost = found.without(&own);
     Ok(Matched { source, target, own, partners, offset, maps, speeds, lost })
 }
 
@@ -192,6 +196,21 @@ impl Line {
         );
         let (into_source, into_target) = lacking(source, target, window, map);
         Ok(Self { window, into_source, into_target })
+    }
+}
+
+impl Line {
+    /// Puts the ends of the source's domain into the target, where they fall between its knots.
+    fn insert_ends(&mut self, [source, target]: [&KnotVector; 2], map: LineMap) {
+        let (from, to) = (source.domain(), target.domain());
+        for end in [from.0, from.1].map(|x| map.image(x)) {
+            let slack = OPEN * (to.1 - to.0);
+            let inside = end > to.0 + slack && end < to.1 - slack;
+            let known = target.knots().iter().chain(&self.into_target).any(|k| (k - end).abs() <= slack);
+            if inside && !known {
+                self.into_target.push(end);
+            }
+        }
     }
 }
 
@@ -256,8 +275,9 @@ fn with_partners(
     found: &Mask,
     offset: [isize; 2],
     maps: [LineMap; 2],
-    (margin, reach): (usize, usize),
+    (settings, reach): (&Settings, usize),
 ) -> (Mask, Mask) {
+    let margin = settings.margin;
     let (shape, target_shape) = (source.shape(), target.shape());
     let (mut own, mut partners) =
         (Mask::empty(shape.0, shape.1), Mask::empty(target_shape.0, target_shape.1));
@@ -268,9 +288,13 @@ fn with_partners(
         let off_border = |i: usize, index: usize| {
             index >= margin && index + margin < knots[1].n_basis() && i >= 1 && i + 1 < count
         };
+        let fits =
+            |i: usize, index: usize| settings.ends == Ends::Open || same_support(knots, i, index, maps[k]);
         let near = |i: usize| i.saturating_sub(reach)..(i + reach + 1).min(count);
         (0..count)
-            .map(|i| same[i].filter(|&at| off_border(i, at) && near(i).all(|q| same[q].is_some())))
+            .map(|i| {
+                same[i].filter(|&at| off_border(i, at) && fits(i, at) && near(i).all(|q| same[q].is_some()))
+            })
             .collect::<Vec<Option<usize>>>()
     });
     for at in found.indices() {
@@ -281,6 +305,14 @@ fn with_partners(
         }
     }
     (own, partners)
+}
+
+/// Whether two partners act on the same interval too.
+fn same_support([source, target]: [&KnotVector; 2], i: usize, index: usize, map: LineMap) -> bool {
+    let (start, end) = target.domain();
+    let slack = PARTNERS * (end - start);
+    let p = source.degree();
+    [0, p + 1].iter().all(|k| (target.knots()[index + k] - map.image(source.knots()[i + k])).abs() <= slack)
 }
 
 /// Index on the target of the control point with the same inner knots.

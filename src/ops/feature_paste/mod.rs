@@ -27,7 +27,7 @@ pub use contour::{Plane, project_contour};
 pub use error::PasteError;
 pub use identify::{Identified, contour_polygon, identify};
 pub use settings::{
-    EdgeWeights, Existing, Feature, Ground, Method, Mirror, ParameterMap, Pasted, Rule, Settings, Turn,
+    EdgeWeights, Ends, Existing, Feature, Ground, Method, Mirror, ParameterMap, Pasted, Rule, Settings, Turn,
 };
 
 use crate::geometry::nurbs::{KnotVector, NurbsSurface};

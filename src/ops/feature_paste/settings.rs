@@ -74,6 +74,16 @@ pub enum Existing {
     Stronger,
 }
 
+/// Whether the ends of the source's domain become knots of the target.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Ends {
+    /// No: as published. The outermost control points of a feature that fills its source then act beyond it.
+    Open,
+    /// Yes, where they fall inside the target: nothing acts beyond the feature.
+    #[default]
+    Inserted,
+}
+
 /// Mirror of the feature before it is turned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Mirror {
@@ -105,6 +115,8 @@ pub struct Settings {
     pub angle: f64,
     /// Mirror.
     pub mirror: Mirror,
+    /// Ends of the source's domain (matched nets only).
+    pub ends: Ends,
     /// Rows and columns at the border of the target that stay.
     pub margin: usize,
     /// Greatest deviation of a fit, in the target's units.
@@ -129,6 +141,7 @@ impl Settings {
             scale: [1.0; 3],
             angle: 0.0,
             mirror: Mirror::default(),
+            ends: Ends::default(),
             margin: 2,
             tolerance,
             limit: NET_LIMIT,
@@ -215,6 +228,8 @@ pub struct Pasted {
     pub method: Method,
     /// Control points of the feature that were left out: too near to a border, or without partner.
     pub lost: usize,
+    /// Greatest displacement, in the source's units, of a control point that was left out.
+    pub lost_detail: f64,
     /// Greatest deviation of a fit.
     pub fit_error: Option<f64>,
     /// Row and column of the target's net that the source's first row and column fall on (matched nets only).

@@ -62,6 +62,14 @@ impl Mask {
         Self { bits: self.bits.iter().map(|b| !b).collect(), ..*self }
     }
 
+    /// The places of either of two sets of the same shape.
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        let mut out = self.clone();
+        out.unite(other);
+        out
+    }
+
     /// The places that are not in another set of the same shape.
     #[must_use]
     pub fn without(&self, other: &Self) -> Self {

@@ -30,6 +30,8 @@ pub struct PlaceMeasures {
     pub changed: usize,
     /// Control points of the feature that were left out.
     pub lost: usize,
+    /// Greatest displacement that was left out with them.
+    pub lost_detail: f64,
     /// Control points that stayed because of loops of the target.
     pub protected: usize,
     /// Greatest distance between the surface before and after at equal parameters: the height of the feature.
@@ -74,6 +76,7 @@ pub(super) fn measure(place: &Place, pasted: &Pasted, protected: usize) -> Place
         net: [rows, columns],
         changed: pasted.changed.count(),
         lost: pasted.lost,
+        lost_detail: pasted.lost_detail,
         protected,
         height,
         collar_curvature_ratio: curved.then(|| curvature[0] / curvature[1]),

@@ -102,6 +102,9 @@ pub struct Plan {
 /// Tolerance of a fit that nobody set, as a part of the feature's size.
 const TOLERANCE: f64 = 1e-4;
 
+/// Detail that is left out without a word, as a part of the feature's size.
+const LOST: f64 = 1e-6;
+
 /// Plans a paste, place after place on one surface.
 ///
 /// # Errors
@@ -121,7 +124,7 @@ pub fn plan(model: &Model, params: &Params<'_>) -> Result<Plan, OperationError> 
         let settings = Settings {
             scale: place.scale,
             mirror: place.mirror,
-            angle: place.angle + turn_to(&surface, at, place.along)?,
+            angle: snapped(place.angle + turn_to(&surface, at, place.along)?),
             tolerance: params.tolerance.unwrap_or(TOLERANCE * source.size * greatest),
             ..params.settings.clone()
         };
@@ -143,10 +146,12 @@ pub fn plan(model: &Model, params: &Params<'_>) -> Result<Plan, OperationError> 
         places.push(measure::measure(place, &pasted, cut));
         surface = pasted.surface;
     }
-    if places.iter().any(|place| place.lost > 0) {
-        let message = "some control points of the feature were left out: they are too near to a border, or have no \
-                       partner on the target";
-        notes.push(note("paste.region-reduced", Severity::Warning, message.to_owned()));
+    let lost = places.iter().map(|place| place.lost_detail).fold(0.0, f64::max);
+    if lost > LOST * source.size {
+        let message = format!(
+            "the feature is cut off where it is up to {lost:.3e} high: control points there are too near to a border"
+        );
+        notes.push(note("paste.region-reduced", Severity::Warning, message));
     }
     let measures = Measures {
         face: model.origins.faces[params.target].to_string(),
@@ -160,6 +165,14 @@ pub fn plan(model: &Model, params: &Params<'_>) -> Result<Plan, OperationError> 
 
 fn note(code: &'static str, severity: Severity, message: String) -> Diagnostic {
     Diagnostic { code, severity, entity: None, span: None, message }
+}
+
+/// Turns, in radians, that are rounding: the feature's own lines are then those of the target.
+const NO_TURN: f64 = 1e-9;
+
+fn snapped(angle: f64) -> f64 {
+    let turn = angle - std::f64::consts::TAU * (angle / std::f64::consts::TAU).round();
+    if turn.abs() <= NO_TURN { 0.0 } else { angle }
 }
 
 /// Angle from the surface's `u` to a direction in space, about the surface's normal.
