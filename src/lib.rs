@@ -24,3 +24,4 @@ pub mod source;
 pub mod step;
 pub mod units;
 pub mod validate;
+pub mod view;

@@ -3,6 +3,8 @@
 //! Bytes are never decoded, normalised or copied here. A file is at most 4 GiB - 1 byte, so that a
 //! place fits in 32 bits: an index over a file then costs half of what it would with `usize`.
 
+use std::sync::Arc;
+
 use memchr::memchr2_iter;
 
 /// A half-open byte range `[start, end)` of a [`Source`].
@@ -64,10 +66,10 @@ pub struct SourceTooLarge {
     pub bytes: usize,
 }
 
-/// The bytes of one input file, owned and unchanged.
+/// The bytes of one input file, owned and unchanged. Clones share them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Source {
-    bytes: Vec<u8>,
+    bytes: Arc<Vec<u8>>,
 }
 
 impl Source {
@@ -79,7 +81,7 @@ impl Source {
         if u32::try_from(bytes.len()).is_err() {
             return Err(SourceTooLarge { bytes: bytes.len() });
         }
-        Ok(Self { bytes })
+        Ok(Self { bytes: Arc::new(bytes) })
     }
 
     /// All bytes.

@@ -141,3 +141,17 @@ fn annotations_of_a_toleranced_part_are_those_that_its_records_count() {
     // 2 geometric, 1 of attributes, 133 of annotations.
     assert_eq!(of(AnnotationKind::ValidationProperty).count(), 136);
 }
+
+#[test]
+fn compressed_files_are_read_as_what_they_hold() {
+    use resurf::document::Document;
+    let Some(corpus) = corpus() else { return };
+    let bytes = |path: &str| std::fs::read(corpus.join(path)).expect("a file of the corpus");
+    let plain = bytes("step/Amazing Hand Parts - Proximal_Shell.step");
+    for file in ["patho/gz.stpZ", "patho/zip.stpZ"] {
+        let mut sink = Diagnostics::default();
+        let document = Document::open(bytes(file), "stpZ", &mut sink).expect("it is read");
+        assert!(document.source().bytes() == plain, "{file}");
+        assert_eq!(Inventory::of(&document.model(&mut sink)).faces, 26, "{file}");
+    }
+}

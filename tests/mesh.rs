@@ -4,7 +4,7 @@ use resurf::brep::{
     Body, BodyId, BodyKind, Brep, Coedge, CurveId, Edge, EdgeId, Face, FaceId, Loop, Shell, ShellId,
     SurfaceId, Vertex, VertexId,
 };
-use resurf::geometry::nurbs::{KnotVector, NurbsSurface};
+use resurf::geometry::nurbs::{KnotVector, NurbsCurve3, NurbsSurface};
 use resurf::geometry::{Carried, Curve, Surface};
 use resurf::math::{Frame, Point3, Vector3};
 use resurf::mesh::{
@@ -233,6 +233,102 @@ fn cones_and_hemispheres_close_at_their_poles() {
         let area = 2.0 * exact / radius.min(2.0);
         assert!(volume < exact && volume > exact - 0.0101 * area, "{volume} of {exact}");
     }
+}
+
+/// A solid of one face without an edge, bounded by a vertex loop or by nothing.
+fn alone(surface: Surface, vertex: Option<Point3<f64>>) -> Builder {
+    let mut builder = Builder::new(BodyKind::Solid);
+    let face = builder.face(surface, &[]);
+    if let Some(at) = vertex {
+        let vertex = Some(builder.vertex(at));
+        let bound =
+            builder.brep.loops.push(Loop { face, outer: true, forward: true, coedges: vec![], vertex });
+        builder.brep.faces[face].loops.push(bound);
+    }
+    builder
+}
+
+#[test]
+fn whole_surfaces_close_without_an_edge() {
+    let sphere = || Surface::Sphere { frame: upright(), radius: 4.0 };
+    let torus = || Surface::Torus { frame: upright(), major_radius: 5.0, minor_radius: 2.0 };
+    let (ball, ring) = (4.0 / 3.0 * PI * 64.0, 2.0 * PI * PI * 5.0 * 4.0);
+    for (surface, vertex, exact, area) in [
+        (sphere(), Some(Point3::new(0.0, 0.0, -4.0)), ball, 4.0 * PI * 16.0),
+        (sphere(), None, ball, 4.0 * PI * 16.0),
+        (torus(), Some(Point3::new(7.0, 0.0, 0.0)), ring, 4.0 * PI * PI * 10.0),
+    ] {
+        let mesh = alone(surface, vertex).mesh(&FINE).expect("a whole surface");
+        assert_closed(&mesh);
+        assert!((mesh.signed_volume() - exact).abs() < 0.0101 * area, "{} of {exact}", mesh.signed_volume());
+    }
+}
+
+#[test]
+fn what_is_left_of_a_sphere_has_both_poles() {
+    // A ball of radius 5 cut off by the plane x = 3: its face is bounded by one small circle, clockwise, that
+    // goes round neither pole nor seam.
+    let mut builder = Builder::new(BodyKind::Solid);
+    let towards_x = frame(Point3::new(-3.0, 0.0, 0.0), -Vector3::x(), Vector3::y());
+    let vertex = builder.vertex(towards_x.point(4.0, 0.0, 0.0));
+    let rim = builder.edge(Curve::Circle { frame: towards_x, radius: 4.0 }, vertex, vertex);
+    builder.face(Surface::Sphere { frame: upright(), radius: 5.0 }, &[&[(rim, false)]]);
+    builder.face(Surface::Plane(towards_x), &[&[(rim, true)]]);
+    let mesh = builder.mesh(&FINE).expect("a ball without a cap");
+    assert_closed(&mesh);
+    // Ball less the cap of height 2: π h² (3 r - h) / 3.
+    let exact = 4.0 / 3.0 * PI * 125.0 - PI * 4.0 * 13.0 / 3.0;
+    assert!((mesh.signed_volume() - exact).abs() < 0.0101 * 314.0, "{} of {exact}", mesh.signed_volume());
+}
+
+#[test]
+fn a_face_that_contradicts_its_loops_and_neighbours_is_turned() {
+    let mut builder = cuboid([4.0, 3.0, 2.0]);
+    let face = builder.brep.faces.ids().next().expect("six faces");
+    builder.brep.faces[face].same_sense = false;
+    let mesh = builder.mesh(&FINE).expect("planes");
+    assert_closed(&mesh);
+    assert!((mesh.signed_volume() - 24.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_band_is_cut_open_where_the_cut_meets_no_bound() {
+    // The lower bound of a cylinder's side leans over: it goes back in u before it goes on, so that straight
+    // up from its start stands its own other part.
+    let mut builder = Builder::new(BodyKind::Surface);
+    let at = |u: f64, v: f64| Point3::new(5.0 * u.cos(), 5.0 * u.sin(), v);
+    let corners = [(0.0, 0.0), (-0.5, 1.0), (0.3, 2.0), (1.0, 0.5), (3.0, 0.0), (5.0, 0.0)];
+    let vertices = corners.map(|(u, v)| builder.vertex(at(u, v)));
+    let mut low = Vec::new();
+    for k in 0..corners.len() {
+        let (from, to) = (corners[k], corners[(k + 1) % corners.len()]);
+        let to = if k + 1 == corners.len() { (to.0 + 2.0 * PI, to.1) } else { to };
+        // A degree-one chain of short chords, near enough to the helix between its ends.
+        let points: Vec<Point3<f64>> = (0..=40)
+            .map(|i| f64::from(i) / 40.0)
+            .map(|s| at(from.0 + s * (to.0 - from.0), from.1 + s * (to.1 - from.1)))
+            .collect();
+        let knots = KnotVector::clamped_uniform(1, 40, 0.0, 40.0).expect("good knots");
+        let curve =
+            NurbsCurve3::new(knots, points.iter().map(|p| [p.x, p.y, p.z, 1.0]).collect()).expect("a net");
+        let end = vertices[(k + 1) % corners.len()];
+        low.push((builder.edge(Curve::Polyline(curve), vertices[k], end), true));
+    }
+    let top = frame(Point3::new(0.0, 0.0, 6.0), Vector3::z(), Vector3::x());
+    let vertex = builder.vertex(at(0.0, 6.0));
+    let high = builder.edge(Curve::Circle { frame: top, radius: 5.0 }, vertex, vertex);
+    builder.face(Surface::Cylinder { frame: upright(), radius: 5.0 }, &[&low, &[(high, false)]]);
+    let mesh = builder.mesh(&FINE).expect("a band");
+    // The area under the lower bound, by the trapezoids of its corners, is missing.
+    let ring = |k: usize| if k == corners.len() { (2.0 * PI, 0.0) } else { corners[k] };
+    let under: f64 = (0..corners.len())
+        .map(|k| (ring(k), ring(k + 1)))
+        .map(|(a, b)| 0.5 * (a.1 + b.1) * (b.0 - a.0))
+        .sum();
+    let exact = 5.0 * (12.0 * PI - under);
+    assert!((mesh.area() - exact).abs() < 3e-3 * exact, "{} of {exact}", mesh.area());
+    let integrity = Integrity::of(&mesh);
+    assert_eq!((integrity.crowded_edges, integrity.turned_edges), (0, 0));
 }
 
 #[test]

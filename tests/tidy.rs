@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Layer of each room, from `docs/architecture.md`. A room imports rooms of lower layers only.
-const LAYERS: [(&str, u8); 17] = [
+const LAYERS: [(&str, u8); 18] = [
     ("source", 0),
     ("diagnostic", 1),
     ("units", 0),
@@ -20,6 +20,7 @@ const LAYERS: [(&str, u8); 17] = [
     ("ops", 5),
     ("picture", 5),
     ("validate", 5),
+    ("view", 5),
     ("document", 6),
     ("job", 7),
     ("cli", 8),

@@ -31,6 +31,8 @@ pub enum Command {
     Inspect(InspectArguments),
     /// Check parts, and ask other programs about them
     Check(CheckArguments),
+    /// Write one self-contained HTML page that shows a part
+    View(ViewArguments),
     /// Print the JSON Schema of the job file or of the report
     Schema {
         /// Which one
@@ -81,6 +83,11 @@ pub enum Target {
     Stl,
     /// OFF
     Off,
+    /// 3MF with names and colours
+    #[value(name = "3mf")]
+    ThreeMf,
+    /// Binary glTF with names and colours
+    Glb,
 }
 
 /// Arguments of `inspect`.
@@ -98,6 +105,20 @@ pub struct InspectArguments {
     /// Show all faces
     #[arg(long)]
     pub faces: bool,
+}
+
+/// Arguments of `view`.
+#[derive(Debug, Args)]
+pub struct ViewArguments {
+    /// Part to read
+    #[arg(value_name = "PART")]
+    pub part: PathBuf,
+    /// Page to write
+    #[arg(short, long, value_name = "PAGE")]
+    pub output: PathBuf,
+    /// Greatest distance of the triangles from the part: a number in file units, or with a unit
+    #[arg(long, value_name = "LENGTH")]
+    pub tolerance: Option<crate::units::Length>,
 }
 
 /// Arguments of `check`.

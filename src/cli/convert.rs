@@ -10,7 +10,7 @@ use crate::diagnostic::Severity;
 use crate::document::Format;
 use crate::job::failure::PartError;
 use crate::job::file::SideFormat;
-use crate::job::judge::{chord, mesh_bytes, whole_mesh};
+use crate::job::judge::{chord, side_bytes};
 use crate::job::output::Staged;
 use crate::job::part::Read;
 use crate::job::plan::normal;
@@ -58,9 +58,13 @@ fn places(arguments: &ConvertArguments) -> Result<Vec<(PathBuf, Target)>, String
             let name = input.file_name().ok_or_else(|| format!("{} is no file", input.display()))?;
             let name = PathBuf::from(name);
             output.join(match target {
+                // What is written of a compressed file is plain.
+                Target::Step if is_compressed(&name) => name.with_extension("stp"),
                 Target::Step => name,
                 Target::Stl => name.with_extension("stl"),
                 Target::Off => name.with_extension("off"),
+                Target::ThreeMf => name.with_extension("3mf"),
+                Target::Glb => name.with_extension("glb"),
             })
         } else {
             output.clone()
@@ -77,14 +81,21 @@ fn places(arguments: &ConvertArguments) -> Result<Vec<(PathBuf, Target)>, String
     Ok(places)
 }
 
+fn is_compressed(name: &Path) -> bool {
+    let extension = name.extension().and_then(|e| e.to_str()).unwrap_or_default();
+    ["stpz", "gz", "zip"].iter().any(|known| extension.eq_ignore_ascii_case(known))
+}
+
 fn by_extension(output: &Path) -> Result<Target, String> {
     let extension = output.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     match extension.as_str() {
         "stl" => Ok(Target::Stl),
         "off" => Ok(Target::Off),
+        "3mf" => Ok(Target::ThreeMf),
+        "glb" => Ok(Target::Glb),
         _ if Format::of_extension(&extension) == Some(Format::Step) => Ok(Target::Step),
         _ => Err(format!(
-            "the extension of {} is not one that is written: step, stp, stl, off; `--to` decides as well",
+            "the extension of {} is not one that is written: step, stp, stl, off, 3mf, glb; `--to` decides as well",
             output.display()
         )),
     }
@@ -97,26 +108,44 @@ fn one(
     tolerance: Option<Length>,
     printer: &mut Printer,
 ) -> Result<(), PartError> {
+    match target {
+        Target::Step => copy(input, output, printer),
+        Target::Stl => mesh(input, output, SideFormat::Stl, tolerance, printer),
+        Target::Off => mesh(input, output, SideFormat::Off, tolerance, printer),
+        Target::ThreeMf => mesh(input, output, SideFormat::ThreeMf, tolerance, printer),
+        Target::Glb => mesh(input, output, SideFormat::Glb, tolerance, printer),
+    }
+}
+
+/// Passes a part through. The disk takes longer than the look at the file, so the bytes are on their way while they
+/// are read; a file that turns out damaged leaves nothing behind.
+fn copy(input: &Path, output: &Path, printer: &mut Printer) -> Result<(), PartError> {
+    let unpacked = Read::unpack(input)?;
+    let source = unpacked.source().clone();
+    let staged = std::thread::scope(|scope| {
+        let staged = scope.spawn(|| Staged::write(output, source.bytes()));
+        let mut read = Read::parse(unpacked);
+        read.look_for_overflow();
+        show::diagnostics(printer, input, &read);
+        read.refuse_damage()?;
+        staged.join().map_err(|_| PartError::Internal)?.map_err(PartError::Output)
+    })?;
+    staged.commit().map_err(PartError::Output)
+}
+
+fn mesh(
+    input: &Path,
+    output: &Path,
+    format: SideFormat,
+    tolerance: Option<Length>,
+    printer: &mut Printer,
+) -> Result<(), PartError> {
     let mut read = Read::file(input)?;
-    let format = match target {
-        Target::Step => None,
-        Target::Stl => Some(SideFormat::Stl),
-        Target::Off => Some(SideFormat::Off),
-    };
-    let bytes = match format {
-        None => {
-            read.look_for_overflow();
-            None
-        }
-        Some(format) => {
-            let model = read.model();
-            let chord = tolerance.map(|length| chord(&model, length, "--tolerance")).transpose()?;
-            Some(mesh_bytes(&whole_mesh(&model, chord)?, format))
-        }
-    };
+    let model = read.model();
+    let chord = tolerance.map(|length| chord(&model, length, "--tolerance")).transpose()?;
+    let bytes = side_bytes(&model, chord, format)?;
     show::diagnostics(printer, input, &read);
-    // The mesh of what could be read would be the mesh of half a part; a copy is whole whatever it means.
-    if bytes.is_some() { read.refuse_errors() } else { read.refuse_damage() }?;
-    let bytes = bytes.as_deref().unwrap_or_else(|| read.document.source().bytes());
-    Staged::write(output, bytes).and_then(Staged::commit).map_err(PartError::Output)
+    // The mesh of what could be read would be the mesh of half a part.
+    read.refuse_errors()?;
+    Staged::write(output, &bytes).and_then(Staged::commit).map_err(PartError::Output)
 }

@@ -6,7 +6,7 @@ use super::arguments::InspectArguments;
 use super::exit_code;
 use super::print::Printer;
 use super::show;
-use crate::job::contents::{Contents, contents};
+use crate::job::contents::{Contents, TreeEntry, contents};
 use crate::job::failure::PartError;
 use crate::job::operate::OperateError;
 use crate::job::part::Read;
@@ -48,6 +48,20 @@ fn json(contents: &Contents) -> String {
     text
 }
 
+/// Lines of the tree that are shown.
+const TREE_LINES: usize = 200;
+
+fn tree_line(node: &TreeEntry) -> String {
+    let indent = "  ".repeat(node.depth.min(TREE_LINES));
+    let place = node.placement.map(|[.., [x, y, z]]| {
+        let short = |number: f64| (number * 1e6).round() / 1e6 + 0.0;
+        format!(" at ({}, {}, {})", short(x), short(y), short(z))
+    });
+    let used = node.occurrence.as_ref().filter(|name| !name.is_empty()).map(|name| format!(" as {name:?}"));
+    let bodies = if node.bodies.is_empty() { String::new() } else { format!(": {}", node.bodies.join(" ")) };
+    format!("{indent}{:?}{}{}{bodies}", node.product, used.unwrap_or_default(), place.unwrap_or_default())
+}
+
 fn plain(contents: &Contents) -> String {
     let figures = &contents.figures;
     let mut text = String::new();
@@ -69,7 +83,23 @@ fn plain(contents: &Contents) -> String {
     for product in &contents.products {
         let used = product.used_in.join(", ");
         let used = if used.is_empty() { String::new() } else { format!(" in {used}") };
-        line("product", format!("{} {:?}{used}", product.id, product.name));
+        let times = if product.instances > 1 { format!(" x{}", product.instances) } else { String::new() };
+        let external = product.external.join(", ");
+        let external = if external.is_empty() { external } else { format!(", shape in {external}") };
+        line("product", format!("{} {:?}{times}{used}{external}", product.id, product.name));
+    }
+    let trunk = if contents.tree.len() > 1 { contents.tree.as_slice() } else { &[] };
+    for node in trunk.iter().take(TREE_LINES) {
+        line("tree", tree_line(node));
+    }
+    if contents.tree_cut || trunk.len() > TREE_LINES {
+        line("tree", "… more of it with --json".to_owned());
+    }
+    for group in &contents.groups {
+        line("selector", format!("{} finds {}", group.selector, group.faces));
+    }
+    for (kind, count) in &contents.annotations {
+        line(kind, count.to_string());
     }
     for face in &contents.faces {
         let colour = face.colour.as_deref().unwrap_or("no colour");

@@ -11,6 +11,7 @@ mod inspect;
 mod print;
 mod run;
 mod show;
+mod view;
 
 use clap::Parser;
 
@@ -35,6 +36,7 @@ pub fn main() -> u8 {
         Command::Convert(arguments) => convert::convert(&arguments, &mut printer),
         Command::Inspect(arguments) => inspect::inspect(&arguments, &mut printer),
         Command::Check(arguments) => check::check(&arguments, &mut printer),
+        Command::View(arguments) => view::view(&arguments, &mut printer),
         Command::Schema { of } => {
             printer.data(&match of {
                 SchemaOf::Job => crate::job::schema::job(),

@@ -12,6 +12,7 @@ mod foot_on_curve;
 pub mod nurbs;
 pub mod parameters;
 pub mod surface;
+pub mod to_nurbs;
 pub mod transform;
 
 pub use bounded::{Composite, Segment, Trimmed};
@@ -19,6 +20,7 @@ pub use curve::Curve;
 pub use curve2d::Curve2d;
 pub use nurbs::SurfaceDerivatives;
 pub use surface::{Patch, PatchGrid, Surface};
+pub use to_nurbs::ToNurbsError;
 pub use transform::{NotRepresentable, ParameterMap};
 
 /// Geometry that was read, or the entity name of geometry that is only carried.

@@ -3,7 +3,7 @@
 use super::operate::OperateError;
 use super::output::FileError;
 use super::report::Failure;
-use crate::document::{LowerError, OpenError};
+use crate::document::{CompressedError, LowerError, OpenError};
 use crate::validate::ValidateError;
 
 /// The first thing that kept a part from being written.
@@ -97,7 +97,9 @@ impl PartError {
         match self {
             Self::Input(error) if error.source.kind() == std::io::ErrorKind::NotFound => code::UNREADABLE,
             Self::Input(_) | Self::Output(_) => code::IO,
-            Self::Open(OpenError::TooLarge(_)) => code::RESOURCE,
+            Self::Open(OpenError::TooLarge(_) | OpenError::Compressed(CompressedError::TooLarge { .. })) => {
+                code::RESOURCE
+            }
             Self::Open(_) | Self::Damaged(_) | Self::Folder(_) => code::UNREADABLE,
             Self::Setting { .. } => code::USAGE,
             Self::Operate(error) if error.code().starts_with("internal.") => code::INTERNAL,

@@ -71,6 +71,11 @@ pub enum SideFormat {
     Stl,
     /// OFF with shared vertices.
     Off,
+    /// 3MF with names and colours.
+    #[serde(rename = "3mf")]
+    ThreeMf,
+    /// Binary glTF with names and colours.
+    Glb,
 }
 
 impl SideFormat {
@@ -80,6 +85,8 @@ impl SideFormat {
         match self {
             Self::Stl => "stl",
             Self::Off => "off",
+            Self::ThreeMf => "3mf",
+            Self::Glb => "glb",
         }
     }
 }

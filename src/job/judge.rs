@@ -1,5 +1,7 @@
 //! Asks other programs about a written file, and meshes what they need.
 
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -7,9 +9,9 @@ use std::time::Duration;
 use super::failure::PartError;
 use super::file::{SideFormat, ValidateSettings, ValidatorName};
 use super::output::FileError;
-use crate::brep::{BodyId, BodyKind};
-use crate::mesh::{Mesh, Tolerances, off, stl, tessellate_bodies};
-use crate::model::Model;
+use crate::brep::{BodyId, BodyKind, FaceId};
+use crate::mesh::{Mesh, Part, Scene, Tolerances, glb, off, stl, tessellate_bodies, three_mf};
+use crate::model::{Colour, Instances, Model};
 use crate::units::{Length, LengthUnit};
 use crate::validate::{Request, ValidateError, Validator, Verdict, ask_freecad, ask_openscad};
 
@@ -141,6 +143,54 @@ pub fn solid_mesh(model: &Model, chord: Option<f64>) -> Result<Option<Mesh>, Par
     if solids.is_empty() { Ok(None) } else { mesh_of(model, &solids, chord).map(Some) }
 }
 
+/// The bytes of a mesh file of all bodies.
+///
+/// # Errors
+/// [`PartError::Mesh`] naming the face.
+pub fn side_bytes(model: &Model, chord: Option<f64>, format: SideFormat) -> Result<Vec<u8>, PartError> {
+    let mut bytes = Vec::new();
+    let written = match format {
+        SideFormat::Stl | SideFormat::Off => return Ok(mesh_bytes(&whole_mesh(model, chord)?, format)),
+        SideFormat::ThreeMf => three_mf::write(&scene(model, chord)?, &mut bytes),
+        SideFormat::Glb => glb::write(&scene(model, chord)?, &mut bytes),
+    };
+    let too_large = |error: std::io::Error| PartError::Mesh(error.to_string());
+    written.map(|()| bytes).map_err(too_large)
+}
+
+/// All bodies, each where the assembly has it, as meshes with their names and colours, in the unit of the first
+/// context. Colours that hold in one use only are passed over.
+///
+/// # Errors
+/// [`PartError::Mesh`] naming the face.
+pub fn scene(model: &Model, chord: Option<f64>) -> Result<Scene, PartError> {
+    let rgb = |colour: Colour| [colour.red, colour.green, colour.blue];
+    let unit = model.contexts.first().map_or_else(LengthUnit::millimetre, |context| context.length.clone());
+    let instances = Instances::of(model, &unit, Instances::LIMIT);
+    let mut meshes: BTreeMap<BodyId, Mesh> = BTreeMap::new();
+    let mut parts = Vec::new();
+    for placed in &instances.bodies {
+        let mesh = match meshes.entry(placed.body) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(place) => place.insert(mesh_of(model, &[placed.body], chord)?),
+        };
+        let attributes = &model.bodies[placed.body];
+        let product = attributes.product.map(|at| model.products[at].name.clone());
+        let own = Some(attributes.own.name.clone()).filter(|name| !name.is_empty());
+        let shells = &model.brep.bodies[placed.body].shells;
+        let faces = shells.iter().flat_map(|&shell| &model.brep.shells[shell].faces);
+        let colour = |face: FaceId| model.faces[face].appearance.colour;
+        let of_product = attributes.product.and_then(|at| model.products[at].appearance.colour);
+        parts.push(Part {
+            name: own.or(product).unwrap_or_default(),
+            mesh: mesh.transformed(&placed.transform),
+            colour: attributes.own.appearance.colour.or(of_product).map(rgb),
+            faces: faces.filter_map(|&face| Some((face, rgb(colour(face)?)))).collect(),
+        });
+    }
+    Ok(Scene { metres: unit.metres, parts })
+}
+
 /// Triangles of all bodies.
 ///
 /// # Errors
@@ -192,13 +242,13 @@ fn diagonal(model: &Model) -> f64 {
     if length > 0.0 { length } else { 1.0 }
 }
 
-/// The bytes of a mesh file.
+/// The bytes of a file of triangles alone: STL, or else OFF.
 #[must_use]
 pub fn mesh_bytes(mesh: &Mesh, format: SideFormat) -> Vec<u8> {
     let mut bytes = Vec::new();
     let written = match format {
         SideFormat::Stl => stl::write_binary(mesh, "resurf", &mut bytes),
-        SideFormat::Off => off::write(mesh, &mut bytes),
+        _ => off::write(mesh, &mut bytes),
     };
     written.expect("writing to memory cannot fail");
     bytes

@@ -6,14 +6,14 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::geometry::{Carried, Surface};
-use crate::model::{Inventory, Model};
+use crate::model::{Context, Inventory, Model};
 
 /// What is inside a part.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Figures {
     /// Names of the application protocol, as the file writes them.
     pub schema: Vec<String>,
-    /// Units of length, one for each context: `mm`.
+    /// Units of length of the contexts, each once: `mm`.
     pub units: Vec<String>,
     /// Counts of `products`, `solids`, `surface_bodies`, `shells`, `faces`, `edges`, `vertices`, and `curves`
     /// that belong to no edge.
@@ -46,7 +46,7 @@ impl Figures {
         let unread = unread_surfaces.iter().map(|(entity, count)| (unread_kind(entity), *count));
         Self {
             schema: schema.clone(),
-            units: contexts.iter().map(|context| context.length.name.clone()).collect(),
+            units: distinct_units(contexts),
             counts: counts.into_iter().map(|(name, count)| (name.to_owned(), count)).collect(),
             surfaces: read.chain(unread).collect(),
             vertex_extents: vertex_extents.map(|corners| corners.map(|corner| corner.coords.into())),
@@ -73,6 +73,16 @@ impl Figures {
         let differing = self.counts.keys().map(|name| (name.clone(), count(self, name), count(other, name)));
         differing.filter(|(_, before, after)| before != after).collect()
     }
+}
+
+fn distinct_units(contexts: &[Context]) -> Vec<String> {
+    let mut units: Vec<String> = Vec::new();
+    for context in contexts {
+        if !units.contains(&context.length.name) {
+            units.push(context.length.name.clone());
+        }
+    }
+    units
 }
 
 /// Word for a face's surface: its kind, or the entity that is not read.

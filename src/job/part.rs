@@ -5,7 +5,7 @@ use std::path::Path;
 use super::failure::PartError;
 use super::output::FileError;
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity};
-use crate::document::Document;
+use crate::document::{Document, Unpacked};
 use crate::model::Model;
 
 /// A file that was read.
@@ -27,13 +27,29 @@ impl Read {
     /// # Errors
     /// [`PartError::Input`], [`PartError::Open`].
     pub fn file(path: &Path) -> Result<Self, PartError> {
+        Ok(Self::parse(Self::unpack(path)?))
+    }
+
+    /// Reads the bytes of a file from its place, and takes them out of their container.
+    ///
+    /// # Errors
+    /// [`PartError::Input`], [`PartError::Open`], [`PartError::Folder`].
+    pub fn unpack(path: &Path) -> Result<Unpacked, PartError> {
         if path.is_dir() {
             return Err(PartError::Folder(path.to_owned()));
         }
         let bytes = std::fs::read(path)
             .map_err(|source| PartError::Input(FileError { path: path.to_owned(), source }))?;
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
-        Self::bytes(bytes, extension)
+        Ok(Document::unpack(bytes, extension)?)
+    }
+
+    /// Parses an unpacked file.
+    #[must_use]
+    pub fn parse(unpacked: Unpacked) -> Self {
+        let mut diagnostics = Diagnostics::default();
+        let document = Document::parse(unpacked, &mut diagnostics);
+        Self { document, diagnostics }
     }
 
     /// Reads bytes.
@@ -41,9 +57,7 @@ impl Read {
     /// # Errors
     /// [`PartError::Open`].
     pub fn bytes(bytes: Vec<u8>, extension: &str) -> Result<Self, PartError> {
-        let mut diagnostics = Diagnostics::default();
-        let document = Document::open(bytes, extension, &mut diagnostics)?;
-        Ok(Self { document, diagnostics })
+        Ok(Self::parse(Document::unpack(bytes, extension)?))
     }
 
     /// The first damage that makes a file unfit.

@@ -139,7 +139,11 @@ mod tests {
     fn errors_stand_at_the_innermost_place() {
         let scale = "[[operation]]\nkind = \"constrained_scale\"\n";
         let cases = [
-            ("also = [\"stl\", \"obj\"]", "\"obj\"", "unknown value `obj`; known are `stl`, `off`"),
+            (
+                "also = [\"stl\", \"obj\"]",
+                "\"obj\"",
+                "unknown value `obj`; known are `stl`, `off`, `3mf`, `glb`",
+            ),
             ("[validate]\nwiht = []", "wiht", "unknown key `wiht`; did you mean `with`?"),
             ("[validate]\ntimeout = 0", "0", "0 is not a time"),
             (&format!("{scale}factors = [1, 2]"), "[1, 2]", "invalid length 2"),

@@ -242,11 +242,12 @@ fn side_files(
         return Ok(Vec::new());
     }
     let chord = chord(job, model)?;
-    let mesh = judge::whole_mesh(model, chord)?;
     let mut staged = Vec::new();
     for &format in &job.also {
         let path = part.output.with_extension(format.extension());
-        staged.push(Staged::write(&path, &judge::mesh_bytes(&mesh, format)).map_err(PartError::Output)?);
+        staged.push(
+            Staged::write(&path, &judge::side_bytes(model, chord, format)?).map_err(PartError::Output)?,
+        );
         report.side_files.push(path.to_string_lossy().into_owned());
     }
     Ok(staged)

@@ -1,15 +1,19 @@
-//! Triangles: tessellation of bodies, OFF and STL, and what may be wrong with a mesh.
+//! Triangles: tessellation of bodies, OFF, STL, 3MF and GLB, and what may be wrong with a mesh.
 //!
 //! A [`Mesh`] is made from a B-rep or read from bytes; it never becomes a B-rep again. Knows formats of
 //! triangles only, and no file system: writers fill byte vectors, readers take slices.
 
+pub mod glb;
 mod integrity;
 pub mod off;
+mod scene;
 pub mod stl;
 pub mod tessellate;
+pub mod three_mf;
 mod triangle_mesh;
 
 pub use integrity::Integrity;
+pub use scene::{Part, Rgb, Scene};
 pub use tessellate::{TessellateError, Tolerances, tessellate_bodies, tessellate_faces};
 pub use triangle_mesh::{Extents, Mesh};
 

@@ -1,7 +1,7 @@
 //! The container: vertices, triangles, the face of each triangle, normals at the corners.
 
 use crate::brep::FaceId;
-use crate::math::{Point3, Vector3};
+use crate::math::{Affine, Point3, Vector3};
 
 /// Triangles over shared vertices, in file units.
 ///
@@ -63,6 +63,23 @@ impl Mesh {
         self.triangles.iter().map(|corners| corners.map(|at| self.vertices[at as usize]))
     }
 
+    /// The image under a similarity; a mirror turns the triangles over, so that they face outside again.
+    #[must_use]
+    pub fn transformed(&self, map: &Affine) -> Self {
+        let keeps = map.keeps_orientation();
+        let turned = |corners: &[u32; 3]| if keeps { *corners } else { [corners[0], corners[2], corners[1]] };
+        let normals = self.normals.iter().map(|normals| {
+            let [a, b, c] = normals.map(|n| map.vector(&n).try_normalize(0.0).unwrap_or(n));
+            if keeps { [a, b, c] } else { [a, c, b] }
+        });
+        Self {
+            vertices: self.vertices.iter().map(|p| map.point(p)).collect(),
+            triangles: self.triangles.iter().map(turned).collect(),
+            faces: self.faces.clone(),
+            normals: normals.collect(),
+        }
+    }
+
     /// Box around all vertices; `None` for a mesh without one.
     #[must_use]
     pub fn extents(&self) -> Option<Extents> {
@@ -112,6 +129,15 @@ pub(crate) mod tests {
             assert_eq!(extents.min, at);
             assert!((extents.diagonal() - 3f64.sqrt()).abs() < 1e-9);
         }
+    }
+
+    #[test]
+    fn a_mirrored_cube_faces_outside() {
+        let mirror = Affine {
+            linear: crate::math::Matrix3::from_diagonal(&Vector3::new(-2.0, 2.0, 2.0)),
+            translation: Vector3::x(),
+        };
+        assert!((cube([0.0; 3]).transformed(&mirror).signed_volume() - 8.0).abs() < 1e-12);
     }
 
     #[test]

@@ -197,3 +197,14 @@ fn job_files_that_are_none_say_what_they_must_be() {
         assert!(said.starts_with("exit code: 2\n") && said.contains(words), "{job}: {said}");
     }
 }
+
+#[test]
+fn a_part_converts_to_formats_with_names_and_colours() {
+    let fixture = Fixture::new().sample("door/door.step");
+    for (name, magic) in [("door.3mf", &b"PK\x03\x04"[..]), ("door.glb", b"glTF"), ("door.stl", b"resurf")] {
+        let said = fixture.run(&["convert", "door.step", "-o", name]);
+        assert!(said.starts_with("exit code: 0\n"), "{said}");
+        let bytes = std::fs::read(fixture.path(name)).expect("written");
+        assert!(bytes.starts_with(magic), "{name}");
+    }
+}

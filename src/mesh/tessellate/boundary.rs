@@ -23,7 +23,7 @@ const CUT_DEPTH: u32 = 8;
 /// parameter line counts as a pole.
 const AGREEMENT: f64 = 0.1;
 
-/// What the loops of a face need to know, and a way to new vertices of the mesh.
+/// What the loops of a face need to know, and the count of its own vertices.
 pub(super) struct Context<'a> {
     pub brep: &'a Brep,
     pub face: FaceId,
@@ -32,7 +32,19 @@ pub(super) struct Context<'a> {
     pub edges: &'a BTreeMap<EdgeId, SharedEdge>,
     /// Vertices that are loops on their own.
     pub vertex_loops: &'a [Corner],
-    pub push: &'a mut dyn FnMut(Point3<f64>) -> Result<u32, TessellateError>,
+    /// Count of vertices that this face alone has, on cuts and at poles.
+    pub own: u32,
+}
+
+/// Vertices from here on belong to one face: the count above it within the face.
+pub(super) const OWN: u32 = 1 << 31;
+
+impl Context<'_> {
+    /// A new vertex of this face alone.
+    fn push(&mut self) -> u32 {
+        self.own += 1;
+        OWN | (self.own - 1)
+    }
 }
 
 /// Loops of a face in one sheet of the parameter plane; loops that wind around a closed surface are cut
@@ -65,23 +77,18 @@ pub(super) fn loops(context: &mut Context) -> Result<Vec<Vec<Corner>>, Tessellat
             winding.push(Winding { corners, turns });
         }
     }
-    let unfit = TessellateError::WindingBounds { face };
-    match <[Winding; 2]>::try_from(winding) {
-        Ok([mut first, second]) => {
-            first.start_clear_of(&loops);
-            gather(&mut loops, &first);
-            loops.push(band(context, first, second)?.ok_or(unfit)?);
-        }
-        Err(winding) if winding.is_empty() => {}
-        Err(winding) => match <[Winding; 1]>::try_from(winding) {
-            Ok([mut only]) => {
-                only.start_clear_of(&loops);
-                gather(&mut loops, &only);
-                loops.push(cap(context, only)?.ok_or(unfit)?);
-            }
-            Err(_) => return Err(unfit),
+    let polygon = match <[Winding; 2]>::try_from(winding) {
+        Ok([first, second]) => band(context, first, second, &loops),
+        Err(mut winding) => match (winding.pop(), winding.is_empty()) {
+            (None, _) if needs_border(context, &loops) => whole(context),
+            (None, _) => return Ok(loops),
+            (Some(only), true) => cap(context, only, &loops),
+            (Some(_), false) => None,
         },
-    }
+    };
+    let polygon = polygon.ok_or(TessellateError::WindingBounds { face })?;
+    gather(&mut loops, &polygon, context.surface);
+    loops.push(polygon);
     Ok(loops)
 }
 
@@ -98,29 +105,71 @@ impl Winding {
         usize::from(self.turns[1].abs() > self.turns[0].abs())
     }
 
-    /// Starts at the corner that is farthest, around the surface, from all other loops: there the surface
-    /// is cut open.
-    fn start_clear_of(&mut self, others: &[Vec<Corner>]) {
-        let along = self.along();
-        let period = self.turns[along].abs();
-        let ranges: Vec<_> = others.iter().map(|corners| range(corners, along)).collect();
-        let clearance = |corner: &Corner| {
-            let to_range = |&(low, high): &(f64, f64)| {
-                let off = corner.uv[along] - 0.5 * (low + high);
-                (off - period * (off / period).round()).abs() - 0.5 * (high - low)
-            };
-            ranges.iter().map(to_range).fold(period, f64::min)
-        };
-        let best = (0..self.corners.len())
-            .rev()
-            .max_by(|&a, &b| clearance(&self.corners[a]).total_cmp(&clearance(&self.corners[b])));
-        let (Some(best), turns) = (best, self.turns) else { return };
-        self.corners.rotate_left(best);
+    /// Starts at another of its corners.
+    fn start_at(&mut self, corner: usize) {
+        let turns = self.turns;
+        self.corners.rotate_left(corner);
         let count = self.corners.len();
-        for corner in &mut self.corners[count - best..] {
-            *corner = moved(corner, turns);
+        for at in &mut self.corners[count - corner..] {
+            *at = moved(at, turns);
         }
     }
+
+    /// Its sides, and those of other loops, over the turns before and after, for the question what a cut meets.
+    fn walls(&self, others: &[&[Corner]], closed: &[Vec<Corner>]) -> Vec<[[f64; 2]; 2]> {
+        let mut walls = Vec::new();
+        let open = others.iter().map(|corners| (*corners, self.turns));
+        let open = std::iter::once((self.corners.as_slice(), self.turns)).chain(open);
+        let closed = closed.iter().map(|corners| (corners.as_slice(), [0.0; 2]));
+        for (corners, turns) in open.chain(closed) {
+            let Some(first) = corners.first() else { continue };
+            // A loop that winds the other way closes a turn back.
+            let onward = corners.last().map_or(turns, |last| {
+                let far = |sign: f64| {
+                    (0..2).map(|k| (first.uv[k] + sign * turns[k] - last.uv[k]).powi(2)).sum::<f64>()
+                };
+                if far(1.0) <= far(-1.0) { turns } else { turns.map(|t| -t) }
+            });
+            let end = moved(first, onward);
+            let ends = corners.iter().skip(1).chain([&end]);
+            for (a, b) in corners.iter().zip(ends) {
+                for count in -TURNS..=TURNS {
+                    let by = self.turns.map(|turn| turn * f64::from(count));
+                    walls.push([moved(a, by).uv, moved(b, by).uv]);
+                }
+            }
+        }
+        walls
+    }
+}
+
+/// Turns before and after the one at hand over which loops are looked at: a loop may begin a turn off, and
+/// lean over another.
+const TURNS: i32 = 2;
+
+/// Candidates for a cut that are tried, the nearest first.
+const CUTS: usize = 64;
+
+/// Whether a cut meets no wall but at its ends.
+fn is_clear(from: [f64; 2], to: [f64; 2], walls: &[[[f64; 2]; 2]]) -> bool {
+    let side =
+        |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    walls.iter().all(|[a, b]| {
+        let shared = |p: [f64; 2]| p == *a || p == *b;
+        let (fa, fb) = (side(from, to, *a), side(from, to, *b));
+        let (wf, wt) = (side(*a, *b, from), side(*a, *b, to));
+        match (shared(from), shared(to)) {
+            (false, false) => fa * fb > 0.0 || wf * wt > 0.0,
+            // From a common end only a wall in line and in the same direction is met.
+            _ => {
+                fa != 0.0 || fb != 0.0 || {
+                    let (end, other) = if shared(from) { (from, to) } else { (to, from) };
+                    let far = if end == *a { b } else { a };
+                    (0..2).map(|k| (far[k] - end[k]) * (other[k] - end[k])).sum::<f64>() <= 0.0
+                }
+            }
+        }
+    })
 }
 
 /// Least and greatest of one parameter.
@@ -129,17 +178,105 @@ fn range(corners: &[Corner], along: usize) -> (f64, f64) {
     all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), c| (low.min(c), high.max(c)))
 }
 
-/// Moves loops by whole turns to where the region of a winding loop is cut out of the covering plane.
-fn gather(loops: &mut [Vec<Corner>], winding: &Winding) {
-    let along = winding.along();
-    let (turn, Some(begin)) = (winding.turns[along], winding.corners.first()) else { return };
+/// Moves loops by whole turns to where they lie in the polygon that was cut out of the covering plane.
+fn gather(loops: &mut [Vec<Corner>], polygon: &[Corner], surface: &Wrapped) {
+    let turns = surface.turns.map(|turn| turn.map_or(0.0, |(_, period)| period));
+    let counts = |turn: f64| if turn == 0.0 { 0..=0 } else { -TURNS..=TURNS };
     for corners in loops {
-        let (low, high) = range(corners, along);
-        let away = ((0.5 * (low + high) - begin.uv[along]) / turn).floor();
-        for corner in corners {
-            corner.uv[along] -= away * turn;
+        let Some(first) = corners.first().copied() else { continue };
+        let shifts = counts(turns[0]).flat_map(|i| counts(turns[1]).map(move |j| [i, j]));
+        let mut shifts: Vec<[i32; 2]> = shifts.collect();
+        shifts.sort_by_key(|[i, j]| i.abs() + j.abs());
+        let by = |shift: [i32; 2]| [0, 1].map(|k| turns[k] * f64::from(shift[k]));
+        let home = shifts.into_iter().find(|&shift| holds(polygon, moved(&first, by(shift)).uv));
+        if let Some(shift) = home.filter(|shift| *shift != [0, 0]) {
+            corners.iter_mut().for_each(|corner| *corner = moved(corner, by(shift)));
         }
     }
+}
+
+/// Whether a point lies inside a polygon, by the even-odd rule.
+fn holds(polygon: &[Corner], [x, y]: [f64; 2]) -> bool {
+    let ends = polygon.iter().skip(1).chain(polygon.first());
+    let crossed = polygon.iter().zip(ends).filter(|(a, b)| {
+        (a.uv[1] <= y) != (b.uv[1] <= y)
+            && a.uv[0] + (b.uv[0] - a.uv[0]) * (y - a.uv[1]) / (b.uv[1] - a.uv[1]) > x
+    });
+    crossed.count() % 2 == 1
+}
+
+/// Twice the area that a loop encloses in the parameter plane, positive when it runs counter-clockwise.
+fn twice_area(corners: &[Corner]) -> f64 {
+    let ends = corners.iter().skip(1).chain(corners.first());
+    corners.iter().zip(ends).map(|(a, b)| a.uv[0] * b.uv[1] - b.uv[0] * a.uv[1]).sum()
+}
+
+/// Whether the whole of a finite surface bounds the face beside its loops: there is none, or all of them cut
+/// something out of a surface that is closed all round.
+fn needs_border(context: &Context, loops: &[Vec<Corner>]) -> bool {
+    let surface = context.surface.surface;
+    if loops.is_empty() {
+        return true;
+    }
+    let round = matches!(surface, Surface::Sphere { .. } | Surface::Torus { .. });
+    let left = if context.brep.faces[context.face].same_sense { 1.0 } else { -1.0 };
+    round && loops.iter().all(|corners| twice_area(corners) * left < 0.0)
+}
+
+/// The border of a surface with finite parameters as a polygon: closed sides share their vertices, and a side
+/// that is a pole is one vertex. `None` where the parameters have no ends.
+fn whole(context: &mut Context) -> Option<Vec<Corner>> {
+    let ((u0, u1), (v0, v1)) = context.surface.surface.domain();
+    if ![u0, u1, v0, v1].iter().all(|x| x.is_finite()) {
+        return None;
+    }
+    let closed = context.surface.turns.map(|turn| turn.is_some());
+    let point = |uv: [f64; 2]| context.surface.surface.point(uv[0], uv[1]);
+    let corners = [[u0, v0], [u1, v0], [u1, v1], [u0, v1]].map(|uv| (uv, point(uv)));
+    let chord = context.tolerances.chord;
+    let middle = [[0.5 * (u0 + u1), v0], [0.5 * (u0 + u1), v1]].map(point);
+    let poles = [0, 1].map(|k| {
+        let (a, b) = if k == 0 { (0, 1) } else { (3, 2) };
+        (corners[a].1 - corners[b].1).norm() <= chord && (corners[a].1 - middle[k]).norm() <= chord
+    });
+    // The vertices of the four corners, as far as they are told apart.
+    let mut vertex = [0u32; 4];
+    let given = |context: &Context, point: Point3<f64>| {
+        let near = context.vertex_loops.iter().find(|corner| (corner.point - point).norm() <= chord);
+        near.map(|corner| corner.vertex)
+    };
+    for at in 0..4 {
+        let along_u = [1, 0, 3, 2][at];
+        let along_v = [3, 2, 1, 0][at];
+        let bottom = usize::from(at >= 2);
+        vertex[at] = if along_u < at && (closed[0] || poles[bottom]) {
+            vertex[along_u]
+        } else if along_v < at && closed[1] {
+            vertex[along_v]
+        } else {
+            given(context, corners[at].1).unwrap_or_else(|| context.push())
+        };
+    }
+    let corner = |at: usize| Corner { uv: corners[at].0, vertex: vertex[at], point: corners[at].1 };
+    let side = |context: &mut Context, a: usize, b: usize| cut(context, &corner(a), &corner(b));
+    let pole = |k: usize| poles[k];
+    let bottom = if pole(0) { Vec::new() } else { side(context, 0, 1) };
+    let right = side(context, 1, 2);
+    let shifted = |corners: &[Corner], by: [f64; 2]| -> Vec<Corner> {
+        corners.iter().rev().map(|corner| moved(corner, by)).collect()
+    };
+    let top = match (pole(1), closed[1]) {
+        (true, _) => Vec::new(),
+        (false, true) => shifted(&bottom, [0.0, v1 - v0]),
+        (false, false) => side(context, 2, 3),
+    };
+    let left = if closed[0] { shifted(&right, [u0 - u1, 0.0]) } else { side(context, 3, 0) };
+    let mut polygon = Vec::new();
+    for (at, inner) in [bottom, right, top, left].into_iter().enumerate() {
+        polygon.push(corner(at));
+        polygon.extend(inner);
+    }
+    Some(polygon)
 }
 
 /// The corner of a loop's point: the sample of its edge with the same parameter knows the vertex.
@@ -177,56 +314,90 @@ fn moved(corner: &Corner, by: [f64; 2]) -> Corner {
 /// two of their vertices; `None` when the senses are not opposite.
 fn band(
     context: &mut Context,
-    first: Winding,
+    mut first: Winding,
     second: Winding,
-) -> Result<Option<Vec<Corner>>, TessellateError> {
+    inner: &[Vec<Corner>],
+) -> Option<Vec<Corner>> {
     let opposite =
         (0..2).all(|k| first.turns[k].to_bits() == (-second.turns[k]).to_bits() || first.turns[k] == 0.0);
-    let Some(begin) = first.corners.first().copied().filter(|_| opposite) else { return Ok(None) };
-    let (along, turns) = (first.along(), first.turns);
-    let end = moved(&begin, turns);
-    // The second loop starts at the corner that is closest to the first one's end, whole turns aside.
-    let away = |corner: &Corner| (end.uv[along] - corner.uv[along]) / turns[along];
-    let offset = |corner: &Corner| (away(corner) - away(corner).round()).abs();
-    let corners = &second.corners;
-    let start = (0..corners.len()).min_by(|&a, &b| offset(&corners[a]).total_cmp(&offset(&corners[b])));
-    let Some(start) = start else { return Ok(None) };
-    let shift = away(&corners[start]).round();
+    if !opposite || first.corners.is_empty() || second.corners.is_empty() {
+        return None;
+    }
+    let (turns, corners) = (first.turns, &second.corners);
+    let along = first.along();
     let by = |count: f64| turns.map(|turn| turn * count);
-    let across = cut(context, &end, &moved(&corners[start], by(shift)))?;
+    // The nearest corner of the second loop to each of the first, and the turn on which it is; all sides of
+    // the band count alike in the measure.
+    let size = [0, 1].map(|k| {
+        let ends = [range(&first.corners, k), range(corners, k)];
+        (ends[0].1.max(ends[1].1) - ends[0].0.min(ends[1].0)).max(f64::MIN_POSITIVE)
+    });
+    let away = |from: &Corner, to: &Corner| -> (f64, f64) {
+        let count = ((from.uv[along] - to.uv[along]) / turns[along]).round();
+        let to = moved(to, by(count));
+        ((0..2).map(|k| ((from.uv[k] - to.uv[k]) / size[k]).powi(2)).sum(), count)
+    };
+    let nearest = |(at, from): (usize, &Corner)| {
+        let all = corners.iter().enumerate().map(|(to, corner)| (away(from, corner), to));
+        all.min_by(|a, b| a.0.0.total_cmp(&b.0.0)).map(|((far, count), to)| (far, count, at, to))
+    };
+    let mut cuts: Vec<_> = first.corners.iter().enumerate().filter_map(nearest).collect();
+    cuts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let walls = first.walls(&[corners], inner);
+    let clear = |&&(_, count, from, to): &&(f64, f64, usize, usize)| {
+        is_clear(first.corners[from].uv, moved(&corners[to], by(count)).uv, &walls)
+    };
+    let &(_, count, from, start) = cuts.iter().take(CUTS).find(clear).or_else(|| cuts.first())?;
+    // The corners behind the start of the first loop move on by a turn; the cut is at its end.
+    first.start_at(from);
+    let begin = first.corners[0];
+    let end = moved(&begin, turns);
+    let shift = count + 1.0;
+    let across = cut(context, &end, &moved(&corners[start], by(shift)));
     let mut polygon = first.corners;
     polygon.push(end);
     polygon.extend(&across);
     polygon.extend(corners[start..].iter().map(|corner| moved(corner, by(shift))));
     polygon.extend(corners[..=start].iter().map(|corner| moved(corner, by(shift - 1.0))));
     polygon.extend(across.iter().rev().map(|corner| moved(corner, by(-1.0))));
-    Ok(Some(polygon))
+    Some(polygon)
 }
 
 /// The region between a loop that winds once around and a pole, as one polygon cut open from the loop's
 /// start to the pole; `None` when there is no pole on the face's side.
-fn cap(context: &mut Context, only: Winding) -> Result<Option<Vec<Corner>>, TessellateError> {
+fn cap(context: &mut Context, mut only: Winding, inner: &[Vec<Corner>]) -> Option<Vec<Corner>> {
     let (along, turns) = (only.along(), only.turns);
-    let Some(begin) = only.corners.first().copied() else { return Ok(None) };
-    let end = moved(&begin, turns);
-    let Some(place) = pole(context, &only) else { return Ok(None) };
+    let place = pole(context, &only)?;
+    let mut cuts: Vec<usize> = (0..only.corners.len()).collect();
+    let away = |at: usize| (only.corners[at].uv[1 - along] - place).abs();
+    cuts.sort_by(|&a, &b| away(a).total_cmp(&away(b)));
+    let walls = only.walls(&[], inner);
+    let clear = |&at: &usize| {
+        let from = only.corners[at].uv;
+        let mut to = from;
+        to[1 - along] = place;
+        is_clear(from, to, &walls)
+    };
+    let start = cuts.iter().copied().take(CUTS).find(clear).or_else(|| cuts.first().copied())?;
+    only.start_at(start);
+    let end = moved(&only.corners[0], turns);
     let mut uv = end.uv;
     uv[1 - along] = place;
     let pole = match context.vertex_loops.first() {
         Some(vertex) => Corner { uv, ..*vertex },
         None => {
             let point = context.surface.derivatives(uv[0], uv[1]).point;
-            Corner { uv, vertex: (context.push)(point)?, point }
+            Corner { uv, vertex: context.push(), point }
         }
     };
-    let across = cut(context, &end, &pole)?;
+    let across = cut(context, &end, &pole);
     let back = turns.map(|turn| -turn);
     let mut polygon = only.corners;
     polygon.push(end);
     polygon.extend(&across);
     polygon.extend([pole, moved(&pole, back)]);
     polygon.extend(across.iter().rev().map(|corner| moved(corner, back)));
-    Ok(Some(polygon))
+    Some(polygon)
 }
 
 /// The other parameter at which the surface shrinks to a point: to the left of the loop, as the face lies.
@@ -256,7 +427,7 @@ fn pole(context: &Context, only: &Winding) -> Option<f64> {
 }
 
 /// New corners between two along a straight line of the parameter plane, as many as the surface's bend asks for.
-fn cut(context: &mut Context, from: &Corner, to: &Corner) -> Result<Vec<Corner>, TessellateError> {
+fn cut(context: &mut Context, from: &Corner, to: &Corner) -> Vec<Corner> {
     let mut corners = Vec::new();
     let mut before = (from.uv, from.point);
     let mut ahead = vec![((to.uv, to.point), 0)];
@@ -269,12 +440,12 @@ fn cut(context: &mut Context, from: &Corner, to: &Corner) -> Result<Vec<Corner>,
             ahead.push(((uv, point), depth + 1));
         } else {
             if !ahead.is_empty() {
-                corners.push(Corner { uv: after.0, vertex: (context.push)(after.1)?, point: after.1 });
+                corners.push(Corner { uv: after.0, vertex: context.push(), point: after.1 });
             }
             before = after;
         }
     }
-    Ok(corners)
+    corners
 }
 
 #[cfg(test)]

@@ -14,6 +14,9 @@ const CLOSED_PIECES: u32 = 4;
 /// Pieces of another curved edge at least, so that two edges between the same vertices never share a chord.
 const OPEN_PIECES: u32 = 2;
 
+/// Share of the chord tolerance within which two points of an edge count as one.
+const SAME_PLACE: f64 = 0.02;
+
 /// Share of an edge within which two breaks count as one.
 const SAME_PARAMETER: f64 = 1e-9;
 
@@ -30,12 +33,19 @@ pub(super) fn divide(
         edge_range(brep, edge).ok_or(TessellateError::EdgeRange { edge })?;
     let at = |t: f64| EdgePoint { t, point: curve.point_wrapped(t) };
     let mut samples = vec![EdgePoint { t: from, point: ends[0] }];
+    let close = SAME_PLACE * tolerances.chord;
     let breaks = breaks(curve, [from, to], brep.edges[edge].start == brep.edges[edge].end);
     for (k, &t) in breaks.iter().enumerate() {
         let end = if k + 1 == breaks.len() { EdgePoint { t: to, point: ends[1] } } else { at(t) };
         // Halves still to do, the nearest last.
         let mut ahead = vec![(end, 0)];
         let mut before = samples[samples.len() - 1];
+        // Knots may stand closer than anybody can see, where a point more only makes slivers and knots.
+        let is_last = k + 1 == breaks.len();
+        let near = [before.point, ends[1]].iter().any(|p| (p - end.point).norm() < close);
+        if near && !is_last && breaks.len() > CLOSED_PIECES as usize {
+            continue;
+        }
         while let Some((after, depth)) = ahead.pop() {
             let middle = at(0.5 * (before.t + after.t));
             if depth < DEEPEST && is_coarse(curve, before, middle, after, tolerances) {

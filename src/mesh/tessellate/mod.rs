@@ -8,16 +8,19 @@
 //! Does not repair: a shell that is open, or whose faces do not share their edges, gives an open mesh, which
 //! [`Integrity`](super::Integrity) states.
 
+mod assemble;
 mod boundary;
 mod edges;
 mod lattice;
 mod region;
+mod untangle;
 
 use super::Mesh;
 use crate::brep::{BodyId, Brep, EdgeId, FaceId, ParameterLoopError, VertexId};
 use crate::geometry::{Carried, Curve, Surface};
-use crate::math::{Point3, Vector3};
+use crate::math::Point3;
 use boundary::{Context, SharedEdge};
+use rayon::prelude::*;
 use region::{Corner, Region, RegionError};
 use std::collections::BTreeMap;
 
@@ -157,6 +160,11 @@ impl TessellateError {
         }
     }
 
+    /// Whether the bounds of a face meet where they should not, which finer edges may mend.
+    fn is_crossing(&self) -> bool {
+        matches!(self, Self::CrossingBounds { .. } | Self::CoincidentVertices { .. })
+    }
+
     fn curve(edge: EdgeId, curve: &Carried<Curve>) -> Self {
         let (entity, reason) = unread(curve);
         Self::Curve { edge, entity, reason }
@@ -175,9 +183,9 @@ fn unread<G>(carried: &Carried<G>) -> (String, String) {
     }
 }
 
-/// Times that bounds that cross are sampled more finely: two curved bounds close together may cross as
-/// polygons and not as curves.
-const ATTEMPTS: usize = 3;
+/// Times that bounds that cross are divided at most, the first included: two curved bounds close together may
+/// cross as polygons and not as curves.
+const ATTEMPTS: u32 = 3;
 
 /// Triangles of all faces of some bodies. See [`tessellate_faces`].
 ///
@@ -209,48 +217,73 @@ pub fn tessellate_faces(
     if !(chord.is_finite() && chord > 0.0 && angle.is_finite() && angle > 0.0) {
         return Err(TessellateError::Tolerances { chord, angle });
     }
-    let mut now = *tolerances;
-    let mut result = attempt(brep, faces, tolerances, &now);
-    for _ in 1..ATTEMPTS {
-        if !matches!(result, Err(TessellateError::CrossingBounds { .. })) {
-            break;
+    let mut work = assemble::Work::new(brep, tolerances);
+    work.divide_edges(faces)?;
+    let mut waiting: Vec<FaceId> = faces.to_vec();
+    while !waiting.is_empty() {
+        let done: Vec<_> = waiting
+            .par_iter()
+            .map(|&face| region_of(brep, face, tolerances, &work.edges, &work.vertices))
+            .collect();
+        let mut crossing = Vec::new();
+        for (face, result) in waiting.into_iter().zip(done) {
+            match result {
+                Ok(region) => work.keep(face, region)?,
+                Err(error) if error.is_crossing() => crossing.push((face, error)),
+                Err(error) => return Err(error),
+            }
         }
-        now = now.finer();
-        result = attempt(brep, faces, tolerances, &now);
+        for (face, error) in crossing {
+            if !work.refine(face)? {
+                return Err(error);
+            }
+        }
+        waiting = faces.iter().copied().filter(|&face| !work.has(face)).collect();
     }
-    result
+    work.finish(faces)
 }
 
-fn attempt(
+/// Triangles of one face over the shared points of its edges. Where the bounds cross, as they may by less
+/// than the data's tolerance where edges meet, they are untangled in the parameter plane.
+fn region_of(
     brep: &Brep,
-    faces: &[FaceId],
+    face: FaceId,
     tolerances: &Tolerances,
-    edge_tolerances: &Tolerances,
-) -> Result<Mesh, TessellateError> {
-    let mut builder =
-        Builder { brep, mesh: Mesh::default(), vertices: BTreeMap::new(), edges: BTreeMap::new() };
-    for &face in faces {
-        let carried = brep.surface_of(face);
-        let surface = carried.read().ok_or_else(|| TessellateError::surface(face, carried))?;
-        for coedge in brep.coedges_of(face) {
-            builder.add_edge(brep.coedges[coedge].edge, edge_tolerances)?;
+    edges: &BTreeMap<EdgeId, SharedEdge>,
+    vertices: &BTreeMap<VertexId, u32>,
+) -> Result<Region, TessellateError> {
+    let carried = brep.surface_of(face);
+    let surface = carried.read().ok_or_else(|| TessellateError::surface(face, carried))?;
+    let domain = Wrapped::of(surface);
+    let vertex_loops: Vec<Corner> = brep.faces[face]
+        .loops
+        .iter()
+        .filter_map(|&bound| brep.loops[bound].vertex)
+        .filter_map(|vertex| {
+            let point = brep.vertices[vertex].point;
+            Some(Corner { uv: [0.0; 2], vertex: *vertices.get(&vertex)?, point })
+        })
+        .collect();
+    let vertex_loops = vertex_loops.as_slice();
+    let mut context = Context { brep, face, surface: &domain, tolerances, edges, vertex_loops, own: 0 };
+    let mut loops = boundary::loops(&mut context)?;
+    let evaluate = |u: f64, v: f64| domain.derivatives(u, v);
+    let run =
+        |loops: &[Vec<Corner>]| region::triangulate(loops, tolerances, Tolerances::MOST_VERTICES, &evaluate);
+    let mut result = run(&loops);
+    if matches!(result, Err(RegionError::Crossing(_) | RegionError::Coincident(_))) {
+        for corners in &mut loops {
+            untangle::untangle(corners);
         }
-        let domain = Wrapped::of(surface);
-        let loops = builder.loops(face, &domain, tolerances)?;
-        let budget = Tolerances::MOST_VERTICES.saturating_sub(builder.mesh.vertices.len());
-        let evaluate = |u: f64, v: f64| domain.derivatives(u, v);
-        let region = region::triangulate(&loops, tolerances, budget, &evaluate).map_err(|error| {
-            let kind = surface.kind();
-            match error {
-                RegionError::Degenerate => TessellateError::DegenerateFace { face, kind },
-                RegionError::Crossing(place) => TessellateError::CrossingBounds { face, kind, place },
-                RegionError::Coincident(place) => TessellateError::CoincidentVertices { face, kind, place },
-                RegionError::TooMany => TessellateError::TooManyVertices,
-            }
-        })?;
-        builder.add_region(face, &region, &domain);
+        result = run(&loops);
     }
-    Ok(builder.mesh)
+    let kind = surface.kind();
+    result.map_err(|error| match error {
+        RegionError::Degenerate => TessellateError::DegenerateFace { face, kind },
+        RegionError::Crossing(place) => TessellateError::CrossingBounds { face, kind, place },
+        RegionError::Coincident(place) => TessellateError::CoincidentVertices { face, kind, place },
+        RegionError::TooMany => TessellateError::TooManyVertices,
+    })
 }
 
 /// A surface whose closed directions go on past the ends of the domain.
@@ -275,113 +308,5 @@ impl<'a> Wrapped<'a> {
             _ => at,
         };
         self.surface.derivatives(wrap(u, self.turns[0]), wrap(v, self.turns[1]))
-    }
-}
-
-/// A mesh in the making.
-struct Builder<'a> {
-    brep: &'a Brep,
-    mesh: Mesh,
-    vertices: BTreeMap<VertexId, u32>,
-    edges: BTreeMap<EdgeId, SharedEdge>,
-}
-
-impl Builder<'_> {
-    fn push(&mut self, point: Point3<f64>) -> Result<u32, TessellateError> {
-        let count = self.mesh.vertices.len();
-        if count >= Tolerances::MOST_VERTICES {
-            return Err(TessellateError::TooManyVertices);
-        }
-        self.mesh.vertices.push(point);
-        u32::try_from(count).map_err(|_| TessellateError::TooManyVertices)
-    }
-
-    fn vertex(&mut self, vertex: VertexId) -> Result<u32, TessellateError> {
-        if let Some(&known) = self.vertices.get(&vertex) {
-            return Ok(known);
-        }
-        let index = self.push(self.brep.vertices[vertex].point)?;
-        self.vertices.insert(vertex, index);
-        Ok(index)
-    }
-
-    fn add_edge(&mut self, edge: EdgeId, tolerances: &Tolerances) -> Result<(), TessellateError> {
-        if self.edges.contains_key(&edge) {
-            return Ok(());
-        }
-        let samples = edges::divide(self.brep, edge, tolerances)?;
-        let last = samples.len() - 1;
-        let mut vertices = Vec::with_capacity(samples.len());
-        for (at, sample) in samples.iter().enumerate() {
-            let vertex = match at {
-                0 => self.vertex(self.brep.edges[edge].start)?,
-                _ if at == last => self.vertex(self.brep.edges[edge].end)?,
-                _ => self.push(sample.point)?,
-            };
-            vertices.push(vertex);
-        }
-        self.edges.insert(edge, SharedEdge { samples, vertices });
-        Ok(())
-    }
-
-    fn loops(
-        &mut self,
-        face: FaceId,
-        surface: &Wrapped,
-        tolerances: &Tolerances,
-    ) -> Result<Vec<Vec<Corner>>, TessellateError> {
-        let brep = self.brep;
-        let mut vertex_loops = Vec::new();
-        for vertex in brep.faces[face].loops.iter().filter_map(|&bound| brep.loops[bound].vertex) {
-            let point = brep.vertices[vertex].point;
-            vertex_loops.push(Corner { uv: [0.0; 2], vertex: self.vertex(vertex)?, point });
-        }
-        let edges = std::mem::take(&mut self.edges);
-        let mut push = |point| self.push(point);
-        let (edges_given, vertex_loops) = (&edges, vertex_loops.as_slice());
-        let mut context =
-            Context { brep, face, surface, tolerances, edges: edges_given, vertex_loops, push: &mut push };
-        let loops = boundary::loops(&mut context);
-        self.edges = edges;
-        loops
-    }
-
-    fn add_region(&mut self, face: FaceId, region: &Region, surface: &Wrapped) {
-        let brep = self.brep;
-        let forward = brep.faces[face].same_sense == brep.shells[brep.faces[face].shell].forward;
-        let first = self.mesh.vertices.len();
-        let inner = region.nodes.iter().filter(|node| node.vertex.is_none());
-        self.mesh.vertices.extend(inner.map(|node| node.point));
-        let mut next = u32::try_from(first).expect("the budget of vertices is far below 2^32");
-        let indices: Vec<u32> = region
-            .nodes
-            .iter()
-            .map(|node| {
-                node.vertex.unwrap_or_else(|| {
-                    next += 1;
-                    next - 1
-                })
-            })
-            .collect();
-        let normals: Vec<Option<Vector3<f64>>> = region
-            .nodes
-            .iter()
-            .map(|node| surface.derivatives(node.uv[0], node.uv[1]).normal())
-            .map(|normal| normal.map(|n| if forward { n } else { -n }))
-            .collect();
-        for corners in &region.triangles {
-            let corners = if forward { *corners } else { [corners[0], corners[2], corners[1]] };
-            let triangle = corners.map(|node| indices[node as usize]);
-            let [a, b, c] = triangle;
-            if a == b || b == c || c == a {
-                // Two corners at a pole: the sides to the third are one.
-                continue;
-            }
-            let [a, b, c] = triangle.map(|at| self.mesh.vertices[at as usize]);
-            let flat = (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_else(Vector3::zeros);
-            self.mesh.triangles.push(triangle);
-            self.mesh.faces.push(face);
-            self.mesh.normals.push(corners.map(|node| normals[node as usize].unwrap_or(flat)));
-        }
     }
 }

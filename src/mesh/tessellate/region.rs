@@ -4,6 +4,7 @@
 //! The boundary is given and never divided here: its points belong to the neighbours, too.
 
 use super::Tolerances;
+use super::boundary::OWN;
 use super::lattice::Lattice;
 use crate::geometry::nurbs::SurfaceDerivatives;
 use crate::math::Point3;
@@ -43,6 +44,74 @@ pub(super) struct Node {
 pub(super) struct Region {
     pub nodes: Vec<Node>,
     pub triangles: Vec<[u32; 3]>,
+    /// Area that the loops enclose in the parameter plane, as they run: negative where they run clockwise.
+    pub turning: f64,
+}
+
+impl Region {
+    /// Sides of triangles as they run, by the mesh's vertices; only those between two of these.
+    pub(super) fn directed_sides(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
+        let sides = self.triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
+        sides.filter_map(|(a, b)| {
+            let (a, b) = (self.shared(a)?, self.shared(b)?);
+            (a != b).then_some((a, b))
+        })
+    }
+
+    /// Sides of triangles between two of the mesh's vertices, the lower first.
+    pub(super) fn shared_sides(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
+        self.directed_sides().map(|(a, b)| (a.min(b), a.max(b)))
+    }
+
+    fn shared(&self, node: u32) -> Option<u32> {
+        self.nodes[node as usize].vertex.filter(|vertex| vertex & OWN == 0)
+    }
+
+    /// Divides the chords between two of the mesh's vertices that a condition picks, in their middle.
+    pub(super) fn part_chords(
+        &mut self,
+        picks: &dyn Fn((u32, u32)) -> bool,
+        point: &dyn Fn([f64; 2]) -> Point3<f64>,
+    ) {
+        while self.part_some_chords(picks, point) {}
+    }
+
+    /// Divides picked chords of which no two have a triangle in common; whether there was any. Each round
+    /// leaves fewer picked chords and makes none.
+    fn part_some_chords(
+        &mut self,
+        picks: &dyn Fn((u32, u32)) -> bool,
+        point: &dyn Fn([f64; 2]) -> Point3<f64>,
+    ) -> bool {
+        let mut users: BTreeMap<(u32, u32), Vec<usize>> = BTreeMap::new();
+        for (at, &[a, b, c]) in self.triangles.iter().enumerate() {
+            for (a, b) in [(a, b), (b, c), (c, a)] {
+                let Some((from, to)) = self.shared(a).zip(self.shared(b)) else { continue };
+                if from != to && picks((from.min(to), from.max(to))) {
+                    users.entry((a.min(b), a.max(b))).or_default().push(at);
+                }
+            }
+        }
+        let mut touched = BTreeSet::new();
+        for ((a, b), triangles) in users {
+            // A side of one triangle is the boundary itself.
+            let [first, second] = triangles[..] else { continue };
+            let Ok(middle) = u32::try_from(self.nodes.len()) else { return false };
+            if touched.contains(&first) || touched.contains(&second) {
+                continue;
+            }
+            touched.extend([first, second]);
+            let (from, to) = (self.nodes[a as usize], self.nodes[b as usize]);
+            let uv = [0, 1].map(|k| 0.5 * (from.uv[k] + to.uv[k]));
+            self.nodes.push(Node { uv, point: point(uv), vertex: None });
+            for at in [first, second] {
+                let corners = self.triangles[at];
+                self.triangles[at] = corners.map(|corner| if corner == a { middle } else { corner });
+                self.triangles.push(corners.map(|corner| if corner == b { middle } else { corner }));
+            }
+        }
+        !touched.is_empty()
+    }
 }
 
 /// Why a region cannot be triangulated.
@@ -111,7 +180,12 @@ pub(super) fn triangulate<E: Fn(f64, f64) -> SurfaceDerivatives>(
         }
     }
     let triangles = work.inner_triangles();
-    Ok(Region { nodes: work.nodes, triangles })
+    let area = |corners: &Vec<Corner>| -> f64 {
+        let ends = corners.iter().skip(1).chain(corners.first());
+        corners.iter().zip(ends).map(|(a, b)| a.uv[0] * b.uv[1] - b.uv[0] * a.uv[1]).sum()
+    };
+    let turning = loops.iter().map(area).sum();
+    Ok(Region { nodes: work.nodes, triangles, turning })
 }
 
 impl<E: Fn(f64, f64) -> SurfaceDerivatives> Work<'_, E> {

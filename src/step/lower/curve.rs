@@ -290,8 +290,10 @@ impl Lowering<'_> {
                 let points = Value::List(points.into_iter().map(Value::Reference).collect());
                 Body::simple("POLYLINE", vec![inherited.name(), points])
             }
-            Curve::Trimmed(_) | Curve::Composite(_) | Curve::Offset { .. } => {
-                return Err(LowerError::Unwritable { name: old, kind: curve.kind() });
+            Curve::Trimmed(piece) => self.trimmed_body(old, piece, inherited)?,
+            Curve::Composite(whole) => self.composite_body(old, whole, inherited)?,
+            Curve::Offset { basis, distance, direction } => {
+                self.offset_body(old, (basis, *distance, direction), inherited)?
             }
         })
     }

@@ -14,6 +14,7 @@
 mod access;
 mod compose;
 mod curve;
+mod derived_curve;
 mod placement;
 mod point;
 mod request;

@@ -297,9 +297,11 @@ impl Assembler<'_, '_> {
             return Ok(placing(self.scope, operator)?.after(&factor));
         };
         let mut ends = [items.reference("transform_item_1")?, items.reference("transform_item_2")?];
-        // Some writers give the items against the order of the representations that hold them.
-        let straight = self.holds(first, ends[0]) || self.holds(second, ends[1]);
-        if !straight && (self.holds(first, ends[1]) || self.holds(second, ends[0])) {
+        // Some writers give the items against the order of the representations that hold them, and one item may
+        // be held by both: the order that more memberships speak for counts.
+        let straight = usize::from(self.holds(first, ends[0])) + usize::from(self.holds(second, ends[1]));
+        let crossed = usize::from(self.holds(first, ends[1])) + usize::from(self.holds(second, ends[0]));
+        if crossed > straight {
             ends.reverse();
         }
         let [from, to] = ends;

@@ -1,13 +1,17 @@
 //! Recognises the format of a file; the one place that dispatches between formats.
 //!
-//! Holds no policy: what to do with a file that cannot be read is the caller's decision. STEP is read;
-//! everything else is recognised, so that a message can say what the file is.
+//! Holds no policy: what to do with a file that cannot be read is the caller's decision. STEP is read, plain,
+//! in a gzip stream or in a zip archive; everything else is recognised, so that a message can say what the
+//! file is.
+
+mod compressed;
 
 use crate::diagnostic::Sink;
 use crate::exchange::Patch;
 use crate::model::{ChangeSet, Model, Origin};
 use crate::source::{Source, SourceTooLarge};
 use crate::step::{self, ExchangeStructure};
+pub use compressed::CompressedError;
 
 /// What the bytes of a file are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -92,6 +96,9 @@ pub enum OpenError {
     /// The file is empty.
     #[error("the file is empty; export the part again")]
     Empty,
+    /// The file is compressed, and what is inside cannot be had.
+    #[error(transparent)]
+    Compressed(#[from] CompressedError),
     /// The file is larger than can be addressed.
     #[error(transparent)]
     TooLarge(#[from] SourceTooLarge),
@@ -105,8 +112,23 @@ impl OpenError {
             Self::NotReadYet { .. } => "document.not-read-yet",
             Self::Unknown => "document.unknown-format",
             Self::Empty => "document.empty",
-            Self::TooLarge(_) => "document.too-large",
+            Self::TooLarge(_) | Self::Compressed(CompressedError::TooLarge { .. }) => "document.too-large",
+            Self::Compressed(_) => "document.bad-compression",
         }
+    }
+}
+
+/// One file of a format that is read, out of its container, not yet parsed.
+#[derive(Debug)]
+pub struct Unpacked {
+    source: Source,
+}
+
+impl Unpacked {
+    /// The bytes.
+    #[must_use]
+    pub fn source(&self) -> &Source {
+        &self.source
     }
 }
 
@@ -122,14 +144,38 @@ impl Document {
     /// # Errors
     /// [`OpenError`] when it is no file of a format that is read.
     pub fn open(bytes: Vec<u8>, extension: &str, sink: &mut dyn Sink) -> Result<Self, OpenError> {
+        Ok(Self::parse(Self::unpack(bytes, extension)?, sink))
+    }
+
+    /// Parses an unpacked file. What is wrong inside it goes to the sink.
+    pub fn parse(unpacked: Unpacked, sink: &mut dyn Sink) -> Self {
+        Self { structure: ExchangeStructure::parse(unpacked.source, sink) }
+    }
+
+    /// Recognises a file and takes it out of its container, if it has one.
+    ///
+    /// # Errors
+    /// [`OpenError`] when it is no file of a format that is read.
+    pub fn unpack(bytes: Vec<u8>, extension: &str) -> Result<Unpacked, OpenError> {
         if bytes.is_empty() {
             return Err(OpenError::Empty);
         }
-        match Format::recognise(&bytes, extension) {
-            Some(Format::Step) => Ok(Self { structure: ExchangeStructure::parse(Source::new(bytes)?, sink) }),
+        let (bytes, format) = match Format::recognise(&bytes, extension) {
+            Some(Format::Gzip) => Self::unfolded(compressed::gunzip(&bytes)?),
+            Some(Format::Zip) => Self::unfolded(compressed::unzip(&bytes)?),
+            format => (bytes, format),
+        };
+        match format {
+            Some(Format::Step) => Ok(Unpacked { source: Source::new(bytes)? }),
             Some(format) => Err(OpenError::NotReadYet { format }),
             None => Err(OpenError::Unknown),
         }
+    }
+
+    /// Unfolded bytes with their format, which counts as STEP when they do not say: that is what is sent so.
+    fn unfolded(bytes: Vec<u8>) -> (Vec<u8>, Option<Format>) {
+        let format = Format::recognise(&bytes, "stp");
+        (bytes, format)
     }
 
     /// Name of the format.
@@ -138,7 +184,7 @@ impl Document {
         Format::Step
     }
 
-    /// The input bytes.
+    /// The input bytes; those inside, when the file was compressed.
     #[must_use]
     pub fn source(&self) -> &Source {
         self.structure.source()
