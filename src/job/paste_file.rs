@@ -46,7 +46,7 @@ pub struct FeaturePaste {
     /// What to do when the feature meets a loop of the target.
     #[serde(default)]
     pub loops: LoopsWord,
-    /// Greatest deviation of a fit. Left out: a ten-thousandth of the feature's size.
+    /// Greatest deviation of a fit. Left out: a fifty-thousandth of the feature's size.
     #[serde(default)]
     pub tolerance: Option<LengthSetting>,
 }

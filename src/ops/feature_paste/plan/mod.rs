@@ -100,7 +100,7 @@ pub struct Plan {
 }
 
 /// Tolerance of a fit that nobody set, as a part of the feature's size.
-const TOLERANCE: f64 = 1e-4;
+const TOLERANCE: f64 = 2e-5;
 
 /// Detail that is left out without a word, as a part of the feature's size.
 const LOST: f64 = 1e-6;
