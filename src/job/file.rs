@@ -215,6 +215,16 @@ pub enum Operation {
     ConstrainedScale(Box<ConstrainedScale>),
 }
 
+impl Operation {
+    /// By how much the operation stretches a distance at most; at least 1, since what it leaves alone stays.
+    #[must_use]
+    pub fn growth(&self) -> f64 {
+        match self {
+            Self::ConstrainedScale(scale) => scale.factors.0.into_iter().fold(1.0, f64::max),
+        }
+    }
+}
+
 #[derive(Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum OperationKind {
