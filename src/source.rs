@@ -63,7 +63,7 @@ impl std::fmt::Display for Position {
 #[error("file of {bytes} bytes is over the limit of 4294967295 bytes")]
 pub struct SourceTooLarge {
     /// Size of the refused file.
-    pub bytes: usize,
+    pub bytes: u64,
 }
 
 /// The bytes of one input file, owned and unchanged. Clones share them.
@@ -73,14 +73,20 @@ pub struct Source {
 }
 
 impl Source {
+    /// Whether a file of some bytes can be taken.
+    ///
+    /// # Errors
+    /// [`SourceTooLarge`] from 4 GiB on.
+    pub fn check_size(bytes: u64) -> Result<(), SourceTooLarge> {
+        u32::try_from(bytes).map(|_| ()).map_err(|_| SourceTooLarge { bytes })
+    }
+
     /// Takes the bytes of a file.
     ///
     /// # Errors
     /// [`SourceTooLarge`] from 4 GiB on.
     pub fn new(bytes: Vec<u8>) -> Result<Self, SourceTooLarge> {
-        if u32::try_from(bytes.len()).is_err() {
-            return Err(SourceTooLarge { bytes: bytes.len() });
-        }
+        Self::check_size(bytes.len() as u64)?;
         Ok(Self { bytes: Arc::new(bytes) })
     }
 

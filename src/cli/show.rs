@@ -1,5 +1,6 @@
 //! Facts about files and failures of parts, shown to people.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::print::{Place, Printer};
@@ -56,7 +57,12 @@ pub fn failure(printer: &mut Printer, path: &str, failure: &Failure) {
 /// Shows the warnings of a part's report in a line each.
 pub fn warnings(printer: &mut Printer, part: &PartReport) {
     let notes = part.operations.iter().flat_map(|operation| &operation.notes);
+    let mut said = BTreeSet::new();
     for fact in part.losses.iter().chain(notes) {
+        // A part has one such fact for each record; the report names them all.
+        if !said.insert((&fact.code, &fact.message)) {
+            continue;
+        }
         let severity = match fact.severity.as_str() {
             "error" => Severity::Error,
             "warning" => Severity::Warning,

@@ -15,6 +15,9 @@ pub enum PartError {
     /// The input is a folder.
     #[error("the input is a folder; name the files in it, such as `{}`", .0.join("*.step").display())]
     Folder(std::path::PathBuf),
+    /// The input is a device, a pipe or the like, whose end may never come.
+    #[error("`{}` is no regular file; write what it gives to one first", .0.display())]
+    NoFile(std::path::PathBuf),
     /// A key of the job, or an argument, does not fit the part.
     #[error("`{key}`: {message}")]
     Setting {
@@ -100,7 +103,7 @@ impl PartError {
             Self::Open(OpenError::TooLarge(_) | OpenError::Compressed(CompressedError::TooLarge { .. })) => {
                 code::RESOURCE
             }
-            Self::Open(_) | Self::Damaged(_) | Self::Folder(_) => code::UNREADABLE,
+            Self::Open(_) | Self::Damaged(_) | Self::Folder(_) | Self::NoFile(_) => code::UNREADABLE,
             Self::Setting { .. } => code::USAGE,
             Self::Operate(error) if error.code().starts_with("internal.") => code::INTERNAL,
             Self::Operate(_) | Self::Lower(_) | Self::Mesh(_) => code::OPERATION,
@@ -117,6 +120,7 @@ impl PartError {
         let code = match self {
             Self::Input(_) => "io.input",
             Self::Folder(_) => "io.folder",
+            Self::NoFile(_) => "io.no-file",
             Self::Setting { .. } => "job.setting",
             Self::Open(error) => error.code(),
             Self::Damaged(_) => "document.damaged",

@@ -206,6 +206,17 @@ pub enum Operation {
     FeaturePaste(Box<FeaturePaste>),
 }
 
+impl Operation {
+    /// By how much the operation stretches a distance at most; at least 1, since what it leaves alone stays.
+    #[must_use]
+    pub fn growth(&self) -> f64 {
+        match self {
+            Self::ConstrainedScale(scale) => scale.factors.0.into_iter().fold(1.0, f64::max),
+            Self::FeaturePaste(_) => 1.0,
+        }
+    }
+}
+
 #[derive(Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum OperationKind {
@@ -293,7 +304,10 @@ impl ConstrainedScale {
     }
 }
 
-/// Three positive factors.
+/// Factors beyond this or below its inverse are slips: coordinates would lose the digits that tell points apart.
+const GREATEST_FACTOR: f64 = 1e6;
+
+/// Three positive factors, within a million either way.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
 #[serde(try_from = "[f64; 3]")]
 #[schemars(with = "[f64; 3]")]
@@ -302,8 +316,11 @@ pub struct Factors(pub [f64; 3]);
 impl TryFrom<[f64; 3]> for Factors {
     type Error = String;
     fn try_from(factors: [f64; 3]) -> Result<Self, String> {
-        match factors.iter().find(|f| !(f.is_finite() && **f > 0.0)) {
-            Some(factor) => Err(format!("{factor} is not a factor; expected a positive number")),
+        match factors.iter().find(|f| !(1.0 / GREATEST_FACTOR..=GREATEST_FACTOR).contains(*f)) {
+            Some(factor) => Err(format!(
+                "{factor:e} is not a factor; expected a positive number from {} to {GREATEST_FACTOR}",
+                1.0 / GREATEST_FACTOR
+            )),
             None => Ok(Self(factors)),
         }
     }

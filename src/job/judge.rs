@@ -133,14 +133,13 @@ fn coarse_mesh(model: &Model, scratch: &Path, chord: Option<f64>) -> Result<Opti
     Ok(Some(path))
 }
 
-/// Triangles of all solids; `None` without solids.
+/// Triangles of all solids, each where the assembly has it; `None` without solids.
 ///
 /// # Errors
 /// [`PartError::Mesh`] naming the face.
 pub fn solid_mesh(model: &Model, chord: Option<f64>) -> Result<Option<Mesh>, PartError> {
-    let bodies = model.brep.bodies.iter();
-    let solids: Vec<BodyId> = bodies.filter(|(_, b)| b.kind == BodyKind::Solid).map(|(id, _)| id).collect();
-    if solids.is_empty() { Ok(None) } else { mesh_of(model, &solids, chord).map(Some) }
+    let mesh = placed_mesh(model, chord, |body| model.brep.bodies[body].kind == BodyKind::Solid)?;
+    Ok(Some(mesh).filter(|mesh| !mesh.triangles.is_empty()))
 }
 
 /// The bytes of a mesh file of all bodies.
@@ -165,7 +164,7 @@ pub fn side_bytes(model: &Model, chord: Option<f64>, format: SideFormat) -> Resu
 /// [`PartError::Mesh`] naming the face.
 pub fn scene(model: &Model, chord: Option<f64>) -> Result<Scene, PartError> {
     let rgb = |colour: Colour| [colour.red, colour.green, colour.blue];
-    let unit = model.contexts.first().map_or_else(LengthUnit::millimetre, |context| context.length.clone());
+    let unit = common_unit(model);
     let instances = Instances::of(model, &unit, Instances::LIMIT);
     let mut meshes: BTreeMap<BodyId, Mesh> = BTreeMap::new();
     let mut parts = Vec::new();
@@ -191,13 +190,37 @@ pub fn scene(model: &Model, chord: Option<f64>) -> Result<Scene, PartError> {
     Ok(Scene { metres: unit.metres, parts })
 }
 
-/// Triangles of all bodies.
+/// Triangles of all bodies, each where the assembly has it, in the unit of the first context.
 ///
 /// # Errors
 /// [`PartError::Mesh`] naming the face.
 pub fn whole_mesh(model: &Model, chord: Option<f64>) -> Result<Mesh, PartError> {
-    let bodies: Vec<BodyId> = model.brep.bodies.ids().collect();
-    mesh_of(model, &bodies, chord)
+    placed_mesh(model, chord, |_| true)
+}
+
+fn placed_mesh(
+    model: &Model,
+    chord: Option<f64>,
+    wanted: impl Fn(BodyId) -> bool,
+) -> Result<Mesh, PartError> {
+    let mut whole = Mesh::default();
+    let mut meshes: BTreeMap<BodyId, Mesh> = BTreeMap::new();
+    for placed in Instances::of(model, &common_unit(model), Instances::LIMIT).bodies {
+        if !wanted(placed.body) {
+            continue;
+        }
+        let mesh = match meshes.entry(placed.body) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(place) => place.insert(mesh_of(model, &[placed.body], chord)?),
+        };
+        whole.append(&mesh.transformed(&placed.transform));
+    }
+    Ok(whole)
+}
+
+/// The unit in which bodies of different contexts are put together: that of the first.
+fn common_unit(model: &Model) -> LengthUnit {
+    model.contexts.first().map_or_else(LengthUnit::millimetre, |context| context.length.clone())
 }
 
 fn mesh_of(model: &Model, bodies: &[BodyId], chord: Option<f64>) -> Result<Mesh, PartError> {
@@ -220,7 +243,7 @@ const FINEST: f64 = 1e-7;
 /// # Errors
 /// [`PartError::Setting`] when it does not fit the size of the part.
 pub fn chord(model: &Model, tolerance: Length, key: &'static str) -> Result<f64, PartError> {
-    let unit = model.contexts.first().map_or_else(LengthUnit::millimetre, |context| context.length.clone());
+    let unit = common_unit(model);
     let (chord, size) = (tolerance.in_unit(&unit), diagonal(model));
     if chord >= FINEST * size && chord <= size {
         return Ok(chord);

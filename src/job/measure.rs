@@ -53,19 +53,6 @@ impl Figures {
         }
     }
 
-    /// How much greater the diagonal of `after` is than this one's: at least 1.
-    #[must_use]
-    pub fn growth(&self, after: &Self) -> f64 {
-        let diagonal = |figures: &Self| {
-            let [low, high] = figures.vertex_extents?;
-            Some((0..3).map(|axis| (high[axis] - low[axis]).powi(2)).sum::<f64>().sqrt())
-        };
-        match (diagonal(self), diagonal(after)) {
-            (Some(before), Some(after)) if before > 0.0 => (after / before).max(1.0),
-            _ => 1.0,
-        }
-    }
-
     /// Names of the counts in which two parts differ, with both counts.
     #[must_use]
     pub fn differing_counts(&self, other: &Self) -> Vec<(String, usize, usize)> {

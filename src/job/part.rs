@@ -7,6 +7,7 @@ use super::output::FileError;
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity};
 use crate::document::{Document, Unpacked};
 use crate::model::Model;
+use crate::source::Source;
 
 /// A file that was read.
 #[derive(Debug)]
@@ -38,8 +39,16 @@ impl Read {
         if path.is_dir() {
             return Err(PartError::Folder(path.to_owned()));
         }
-        let bytes = std::fs::read(path)
-            .map_err(|source| PartError::Input(FileError { path: path.to_owned(), source }))?;
+        let input = |source| PartError::Input(FileError { path: path.to_owned(), source });
+        let found = std::fs::metadata(path).map_err(input)?;
+        if !found.is_file() {
+            return Err(PartError::NoFile(path.to_owned()));
+        }
+        // Before it is in memory: what is too large is not read first.
+        if let Err(error) = Source::check_size(found.len()) {
+            return Err(PartError::Open(error.into()));
+        }
+        let bytes = std::fs::read(path).map_err(input)?;
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
         Ok(Document::unpack(bytes, extension)?)
     }

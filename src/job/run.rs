@@ -7,7 +7,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use super::failure::{PartError, code};
-use super::file::Job;
+use super::file::{Job, Operation};
 use super::judge;
 use super::measure::Figures;
 use super::operate::operate;
@@ -86,7 +86,7 @@ fn go(job: &Job, part: &Part, mode: Mode, stamp: &Stamp, report: &mut PartReport
     // The input's bytes serve again when nothing changed: a copy would double the memory.
     let bytes = changed.as_deref().unwrap_or_else(|| read.document.source().bytes());
     let needs_model = !job.operation.is_empty() || !job.also.is_empty() || !job.validate.with.is_empty();
-    let after = if needs_model { Some(read_again(bytes, &part.output, &result, report)?) } else { None };
+    let after = if needs_model { Some(read_again(job, part, bytes, &result, report)?) } else { None };
     if let Some(model) = &after {
         chord(job, model)?;
     }
@@ -197,12 +197,13 @@ fn count_kinds(surfaces: &mut BTreeMap<String, usize>, model: &Model, changes: &
 
 /// Reads the result as anybody else would, and compares it with the input.
 fn read_again(
+    job: &Job,
+    part: &Part,
     bytes: &[u8],
-    output: &Path,
     wanted: &Changed,
     report: &mut PartReport,
 ) -> Result<Model, PartError> {
-    let extension = output.extension().and_then(|e| e.to_str()).unwrap_or_default();
+    let extension = part.output.extension().and_then(|e| e.to_str()).unwrap_or_default();
     let mut read = Read::bytes(bytes.to_vec(), extension)?;
     let model = read.model();
     let after = Figures::of(&model);
@@ -223,7 +224,8 @@ fn read_again(
         }
     }
     if report.write_path == Some(WritePath::Patched) {
-        let growth = report.before.as_ref().map_or(1.0, |before| before.growth(&after));
+        // Of the operations, not of the part's box: a part of an assembly may grow while the box stays.
+        let growth = job.operation.iter().map(Operation::growth).product();
         let own = own_findings(&read.document, &model, growth);
         findings.extend(new_findings(&wanted.findings, &own, growth).map(ToString::to_string));
         report.findings = own;

@@ -5,11 +5,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use globset::{Glob, GlobMatcher};
-
 use super::file::LengthSetting;
 use super::measure::kind;
-use super::selector::{ColourSetting, Conditions, Extreme, Selector};
+use super::selector::{ColourSetting, Conditions, Extreme, Pattern, Selector};
 use crate::brep::FaceId;
 use crate::math::Point3;
 use crate::mesh::{Tolerances, tessellate_faces};
@@ -34,14 +32,6 @@ pub enum SelectError {
         what: String,
         /// What matches.
         found: Vec<String>,
-    },
-    /// A name is not a glob.
-    #[error("`{pattern}` is not a name pattern: {reason}")]
-    BadGlob {
-        /// The pattern.
-        pattern: String,
-        /// Why.
-        reason: String,
     },
 }
 
@@ -181,14 +171,14 @@ fn list<'a>(model: &'a Model, conditions: &Conditions) -> Result<Vec<Condition<'
             offers: Box::new(move |face| model.colour_of(face).map(|c| hex(bytes(c))).into_iter().collect()),
         });
     }
-    let names: [(&str, &Option<String>, NamesOf); 3] = [
+    let names: [(&str, &Option<Pattern>, NamesOf); 3] = [
         ("product", &conditions.product, product_names),
         ("layer", &conditions.layer, layers),
         ("name", &conditions.name, face_names),
     ];
     for (key, pattern, of) in names {
         let Some(pattern) = pattern else { continue };
-        let glob = matcher(pattern)?;
+        let glob = pattern.matcher();
         list.push(Condition {
             what: format!("{key} `{pattern}`"),
             holds: Box::new(move |face| of(model, face).iter().any(|name| glob.is_match(name))),
@@ -196,12 +186,6 @@ fn list<'a>(model: &'a Model, conditions: &Conditions) -> Result<Vec<Condition<'
         });
     }
     Ok(list)
-}
-
-fn matcher(pattern: &str) -> Result<GlobMatcher, SelectError> {
-    let glob = Glob::new(pattern)
-        .map_err(|e| SelectError::BadGlob { pattern: pattern.to_owned(), reason: e.kind().to_string() })?;
-    Ok(glob.compile_matcher())
 }
 
 fn face_names(model: &Model, face: FaceId) -> Vec<String> {

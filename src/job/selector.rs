@@ -1,5 +1,6 @@
 //! Selectors: which faces of a part a job means. The words, without a model.
 
+use globset::{Glob, GlobMatcher};
 use schemars::JsonSchema;
 use serde::{Deserialize, de};
 
@@ -22,7 +23,7 @@ pub enum Selector {
 #[schemars(extend("minProperties" = 1))]
 pub struct Conditions {
     /// Name of the face, or else of its body, as a glob: `"HOOD*"`.
-    pub name: Option<String>,
+    pub name: Option<Pattern>,
     /// The one face nearest to this point, among those for which the other keys hold.
     pub near: Option<[LengthSetting; 3]>,
     /// Kind of its surface.
@@ -30,9 +31,9 @@ pub struct Conditions {
     /// Colour as `"#rrggbb"`, its own or its body's.
     pub colour: Option<ColourSetting>,
     /// Name or id of its product, as a glob.
-    pub product: Option<String>,
+    pub product: Option<Pattern>,
     /// Name of a layer that it or its body lies on, as a glob.
-    pub layer: Option<String>,
+    pub layer: Option<Pattern>,
     /// The one face of the largest or smallest area, among those for which the other keys hold.
     pub area: Option<Extreme>,
 }
@@ -85,6 +86,35 @@ pub enum Extreme {
     Largest,
     /// The least.
     Smallest,
+}
+
+/// A glob that a name has to match.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(try_from = "String")]
+#[schemars(with = "String")]
+pub struct Pattern(Glob);
+
+impl TryFrom<String> for Pattern {
+    type Error = String;
+    fn try_from(text: String) -> Result<Self, String> {
+        Glob::new(&text)
+            .map(Self)
+            .map_err(|error| format!("`{text}` is no pattern of names: {}", error.kind()))
+    }
+}
+
+impl Pattern {
+    /// What decides whether a name matches.
+    #[must_use]
+    pub fn matcher(&self) -> GlobMatcher {
+        self.0.compile_matcher()
+    }
+}
+
+impl std::fmt::Display for Pattern {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.0.glob())
+    }
 }
 
 /// A colour written `#rrggbb`.

@@ -80,6 +80,16 @@ impl Mesh {
         }
     }
 
+    /// Puts another mesh beside this one. Faces and normals go with it when both have them.
+    pub fn append(&mut self, other: &Self) {
+        // Indices of 32 bits are what every mesh format has; tessellation stops long before.
+        let first = self.vertices.len() as u32;
+        self.vertices.extend_from_slice(&other.vertices);
+        self.triangles.extend(other.triangles.iter().map(|corners| corners.map(|corner| corner + first)));
+        self.faces.extend_from_slice(&other.faces);
+        self.normals.extend_from_slice(&other.normals);
+    }
+
     /// Box around all vertices; `None` for a mesh without one.
     #[must_use]
     pub fn extents(&self) -> Option<Extents> {

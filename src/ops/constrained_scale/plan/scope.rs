@@ -50,7 +50,7 @@ pub(super) fn refuse_torn_neighbours(model: &Model, scope: &BTreeSet<FaceId>) ->
 }
 
 /// Faces of a shell that a note names; the rest is counted.
-const NAMED: usize = 8;
+const NAMED: usize = 200;
 
 /// A warning when scaled bodies are components of an assembly: the definition is scaled once, and the
 /// placements of its occurrences stay.
