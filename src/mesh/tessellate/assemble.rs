@@ -2,7 +2,7 @@
 //! their neighbours, and chords that two faces have in common.
 
 use super::boundary::{OWN, SharedEdge};
-use super::region::{Node, Region};
+use super::region::{Node, Region, Shape};
 use super::{ATTEMPTS, TessellateError, Tolerances, Wrapped, edges};
 use crate::brep::{Brep, EdgeId, FaceId, VertexId};
 use crate::math::{Point3, Vector3};
@@ -166,9 +166,7 @@ impl<'a> Work<'a> {
             let Some(surface) = self.brep.surface_of(face).read() else { continue };
             let domain = Wrapped::of(surface);
             if let Some(region) = self.regions.get_mut(&face) {
-                region.part_chords(&|side| uses.contains_key(&side), &|uv| {
-                    domain.derivatives(uv[0], uv[1]).point
-                });
+                region.part_chords(&|side| uses.contains_key(&side), &|uv| domain.point(uv[0], uv[1]));
             }
         }
     }

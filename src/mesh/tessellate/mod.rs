@@ -17,11 +17,11 @@ mod untangle;
 
 use super::Mesh;
 use crate::brep::{BodyId, Brep, EdgeId, FaceId, ParameterLoopError, VertexId};
-use crate::geometry::{Carried, Curve, Surface};
+use crate::geometry::{Carried, Curve, Surface, SurfaceDerivatives};
 use crate::math::Point3;
 use boundary::{Context, SharedEdge};
 use rayon::prelude::*;
-use region::{Corner, Region, RegionError};
+use region::{Corner, Region, RegionError, Shape};
 use std::collections::BTreeMap;
 
 /// How far triangles may be from the surfaces.
@@ -267,9 +267,8 @@ fn region_of(
     let vertex_loops = vertex_loops.as_slice();
     let mut context = Context { brep, face, surface: &domain, tolerances, edges, vertex_loops, own: 0 };
     let mut loops = boundary::loops(&mut context)?;
-    let evaluate = |u: f64, v: f64| domain.derivatives(u, v);
     let run =
-        |loops: &[Vec<Corner>]| region::triangulate(loops, tolerances, Tolerances::MOST_VERTICES, &evaluate);
+        |loops: &[Vec<Corner>]| region::triangulate(loops, tolerances, Tolerances::MOST_VERTICES, &domain);
     let mut result = run(&loops);
     if matches!(result, Err(RegionError::Crossing(_) | RegionError::Coincident(_))) {
         for corners in &mut loops {
@@ -300,13 +299,25 @@ impl<'a> Wrapped<'a> {
         Self { surface, turns: [turn(domain.0.0, periods.0), turn(domain.1.0, periods.1)] }
     }
 
-    fn derivatives(&self, u: f64, v: f64) -> crate::geometry::nurbs::SurfaceDerivatives {
+    fn wrapped(&self, u: f64, v: f64) -> (f64, f64) {
         let wrap = |at: f64, turn: Option<(f64, f64)>| match turn {
             Some((start, period)) if !(start..=start + period).contains(&at) => {
                 start + (at - start).rem_euclid(period)
             }
             _ => at,
         };
-        self.surface.derivatives(wrap(u, self.turns[0]), wrap(v, self.turns[1]))
+        (wrap(u, self.turns[0]), wrap(v, self.turns[1]))
+    }
+}
+
+impl Shape for Wrapped<'_> {
+    fn derivatives(&self, u: f64, v: f64) -> SurfaceDerivatives {
+        let (u, v) = self.wrapped(u, v);
+        self.surface.derivatives(u, v)
+    }
+
+    fn point(&self, u: f64, v: f64) -> Point3<f64> {
+        let (u, v) = self.wrapped(u, v);
+        self.surface.point(u, v)
     }
 }
