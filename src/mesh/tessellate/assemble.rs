@@ -235,10 +235,7 @@ fn add_region(
     if mesh.vertices.len() > Tolerances::MOST_VERTICES {
         return Err(TessellateError::TooManyVertices);
     }
-    let normal = |node: &Node| {
-        let normal = domain.derivatives(node.uv[0], node.uv[1]).normal();
-        normal.map(|n| if forward { n } else { -n })
-    };
+    let normal = |node: &Node| domain.normal(node.uv[0], node.uv[1]).map(|n| if forward { n } else { -n });
     let normals: Vec<Option<Vector3<f64>>> = region.nodes.iter().map(normal).collect();
     for corners in &region.triangles {
         let corners = if forward { *corners } else { [corners[0], corners[2], corners[1]] };

@@ -18,7 +18,7 @@ mod untangle;
 use super::Mesh;
 use crate::brep::{BodyId, Brep, EdgeId, FaceId, ParameterLoopError, VertexId};
 use crate::geometry::{Carried, Curve, Surface, SurfaceDerivatives};
-use crate::math::Point3;
+use crate::math::{Point3, Vector3};
 use boundary::{Context, SharedEdge};
 use rayon::prelude::*;
 use region::{Corner, Region, RegionError, Shape};
@@ -319,5 +319,14 @@ impl Shape for Wrapped<'_> {
     fn point(&self, u: f64, v: f64) -> Point3<f64> {
         let (u, v) = self.wrapped(u, v);
         self.surface.point(u, v)
+    }
+
+    fn normal(&self, u: f64, v: f64) -> Option<Vector3<f64>> {
+        let (u, v) = self.wrapped(u, v);
+        match self.surface {
+            // Without second derivatives.
+            Surface::Nurbs(nurbs) => nurbs.normal(u, v),
+            surface => surface.normal(u, v),
+        }
     }
 }

@@ -7,7 +7,7 @@ use super::Tolerances;
 use super::boundary::OWN;
 use super::lattice::Lattice;
 use crate::geometry::nurbs::SurfaceDerivatives;
-use crate::math::Point3;
+use crate::math::{Point3, Vector3};
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, PositionInTriangulation, Triangulation};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet, VecDeque};
 
@@ -30,6 +30,11 @@ pub(super) trait Shape {
     /// The point alone, which is often much cheaper.
     fn point(&self, u: f64, v: f64) -> Point3<f64> {
         self.derivatives(u, v).point
+    }
+
+    /// The unit normal; `None` where there is none.
+    fn normal(&self, u: f64, v: f64) -> Option<Vector3<f64>> {
+        self.derivatives(u, v).normal()
     }
 }
 
@@ -442,7 +447,6 @@ fn off_segment(point: &Point3<f64>, from: &Point3<f64>, to: &Point3<f64>) -> f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Vector3;
     use std::f64::consts::{PI, TAU};
 
     const TOLERANCES: Tolerances = Tolerances { chord: 0.01, angle: 0.3 };
