@@ -17,9 +17,11 @@ mod untangle;
 
 use super::Mesh;
 use crate::brep::{BodyId, Brep, EdgeId, FaceId, ParameterLoopError, VertexId};
+use crate::geometry::nurbs::KnotVector;
 use crate::geometry::{Carried, Curve, Surface, SurfaceDerivatives};
 use crate::math::{Point3, Vector3};
 use boundary::{Context, SharedEdge};
+use lattice::SAMPLES;
 use rayon::prelude::*;
 use region::{Corner, Region, RegionError, Shape};
 use std::collections::BTreeMap;
@@ -300,15 +302,25 @@ impl<'a> Wrapped<'a> {
     }
 
     fn wrapped(&self, u: f64, v: f64) -> (f64, f64) {
-        let wrap = |at: f64, turn: Option<(f64, f64)>| match turn {
-            Some((start, period)) if !(start..=start + period).contains(&at) => {
-                start + (at - start).rem_euclid(period)
-            }
-            _ => at,
-        };
         (wrap(u, self.turns[0]), wrap(v, self.turns[1]))
     }
 }
+
+/// A parameter within a domain of the given start and length, where there is one.
+fn wrap(at: f64, turn: Option<(f64, f64)>) -> f64 {
+    match turn {
+        Some((start, period)) if !(start..=start + period).contains(&at) => {
+            start + (at - start).rem_euclid(period)
+        }
+        _ => at,
+    }
+}
+
+/// Samples a side for a surface that bends evenly, or a single span of a B-spline.
+const FEWEST_SAMPLES: usize = 5;
+
+/// Samples for each further span of a B-spline.
+const SPAN_SAMPLES: usize = 3;
 
 impl Shape for Wrapped<'_> {
     fn derivatives(&self, u: f64, v: f64) -> SurfaceDerivatives {
@@ -327,6 +339,40 @@ impl Shape for Wrapped<'_> {
             // Without second derivatives.
             Surface::Nurbs(nurbs) => nurbs.normal(u, v),
             surface => surface.normal(u, v),
+        }
+    }
+
+    fn grid(&self, us: &[f64], vs: &[f64]) -> Vec<SurfaceDerivatives> {
+        let wrapped = |at: &[f64], turn| -> Vec<f64> { at.iter().map(|&at| wrap(at, turn)).collect() };
+        let (us, vs) = (wrapped(us, self.turns[0]), wrapped(vs, self.turns[1]));
+        match self.surface {
+            Surface::Nurbs(nurbs) => nurbs.grid_derivatives(&us, &vs),
+            surface => us
+                .iter()
+                .flat_map(|&u| vs.iter().map(move |&v| (u, v)))
+                .map(|(u, v)| surface.derivatives(u, v))
+                .collect(),
+        }
+    }
+
+    fn samples(&self, [low, high]: [[f64; 2]; 2]) -> [usize; 2] {
+        let spans = |knots: &KnotVector, k: usize| {
+            let all = knots.distinct().0;
+            // Over a seam the knots stand elsewhere: then all of them count.
+            let beyond = all.first().is_some_and(|&first| low[k] < first)
+                || all.last().is_some_and(|&last| high[k] > last);
+            let inner = all.iter().filter(|&&knot| beyond || (low[k] < knot && knot < high[k])).count();
+            (SPAN_SAMPLES * inner + FEWEST_SAMPLES).min(SAMPLES)
+        };
+        match self.surface {
+            Surface::Plane(_) => [1; 2],
+            // The bend is the same all along, or changes with one parameter steadily.
+            Surface::Cylinder { .. }
+            | Surface::Cone { .. }
+            | Surface::Sphere { .. }
+            | Surface::Torus { .. } => [FEWEST_SAMPLES; 2],
+            Surface::Nurbs(nurbs) => [spans(nurbs.knots_u(), 0), spans(nurbs.knots_v(), 1)],
+            _ => [SAMPLES; 2],
         }
     }
 }

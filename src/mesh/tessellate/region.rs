@@ -5,7 +5,7 @@
 
 use super::Tolerances;
 use super::boundary::OWN;
-use super::lattice::Lattice;
+use super::lattice::{Lattice, SAMPLES};
 use crate::geometry::nurbs::SurfaceDerivatives;
 use crate::math::{Point3, Vector3};
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, PositionInTriangulation, Triangulation};
@@ -35,6 +35,16 @@ pub(super) trait Shape {
     /// The unit normal; `None` where there is none.
     fn normal(&self, u: f64, v: f64) -> Option<Vector3<f64>> {
         self.derivatives(u, v).normal()
+    }
+
+    /// As [`derivatives`](Self::derivatives) over the grid `us × vs`, row by row in `u`.
+    fn grid(&self, us: &[f64], vs: &[f64]) -> Vec<SurfaceDerivatives> {
+        us.iter().flat_map(|&u| vs.iter().map(move |&v| self.derivatives(u, v))).collect()
+    }
+
+    /// Samples in each direction that show how it bends between two corners; at least one.
+    fn samples(&self, _: [[f64; 2]; 2]) -> [usize; 2] {
+        [SAMPLES; 2]
     }
 }
 
@@ -191,8 +201,7 @@ pub(super) fn triangulate<E: Shape>(
     let bounds = corners().fold([first; 2], |[low, high], corner| {
         [[0, 1].map(|k| low[k].min(corner.uv[k])), [0, 1].map(|k| high[k].max(corner.uv[k]))]
     });
-    let lattice =
-        Lattice::new(bounds, tolerances, |u, v| shape.derivatives(u, v)).ok_or(RegionError::Degenerate)?;
+    let lattice = Lattice::new(bounds, tolerances, shape).ok_or(RegionError::Degenerate)?;
     let cdt = ConstrainedDelaunayTriangulation::new();
     let mut work = Work {
         nodes: Vec::new(),
