@@ -3,7 +3,7 @@
 
     python3 benches/peer/mesh.py BINARY ROUNDS FILE.step...
 
-Needs the package `cadquery-ocp` and the bench `mesh` (`cargo bench --no-run --bench mesh` names its BINARY). Each
+Needs the package `cadquery-ocp` and the bench `tessellate` (`cargo bench --no-run --bench tessellate` names its BINARY). Each
 round runs both programs on the same file, one after the other, each in a process of its own and on one core, with
 the same chord (0.1 mm) and angle (20 degrees), Open CASCADE's `InParallel` off. Least processor times; reading
 is in neither, but Open CASCADE projects edges onto surfaces when it reads, and resurf when it tessellates: the

@@ -1,7 +1,7 @@
 //! Faces per second of tessellation, without reading: for `benches/peer/mesh.py`, which runs it beside another
 //! program.
 //!
-//! `mesh FILE.step CHORD ANGLE [ROUNDS]` with the chord in metres and the angle in degrees prints one JSON object: faces
+//! `tessellate FILE.step CHORD ANGLE [ROUNDS]` with the chord in metres and the angle in degrees prints one JSON object: faces
 //! meshed, triangles, and the least processor time for all bodies. Without a file it meshes a sample of the
 //! project, so that `cargo bench` has something to do.
 
