@@ -1,4 +1,4 @@
-//! Sample parts from formulas: car panels with elliptic holes, one of them once more as a thin solid,
+//! Sample parts from formulas: sheets with features, and a plate, a vase and a shell to take them; car panels with elliptic holes, one of them once more as a thin solid,
 //! and an assembly of two.
 //!
 //! Nothing here uses the library: a sample that the library helped to write could not tell on it. Every
@@ -6,11 +6,14 @@
 //! not change a file.
 
 mod assembly;
+mod feature;
 mod panel;
+mod plate;
 mod records;
 mod sheet;
 mod spline;
 mod thin_solid;
+mod vase;
 
 use panel::Panel;
 use records::Schema;
@@ -30,10 +33,16 @@ pub fn all() -> Vec<Sample> {
         sample("assembly/assembly.step", assembly::write(&Panel::door(), Schema::Ap214)),
         sample("door/door-ap242.step", sheet::write(&Panel::door(), Schema::Ap242)),
         sample("door/door.step", sheet::write(&Panel::door(), Schema::Ap214)),
-        sample("door-solid/door-solid.step", thin_solid::write(&Panel::door(), Schema::Ap242)),
+        sample("door-solid/door-solid.step", thin_solid::write("door-solid", &Panel::door(), Schema::Ap242)),
+        sample("features/bump.step", sheet::write(&feature::bump(), Schema::Ap214)),
+        sample("features/groove.step", sheet::write(&feature::groove(), Schema::Ap214)),
+        sample("features/symbol.step", sheet::write(&feature::symbol(), Schema::Ap242)),
         sample("hood/hood-ap242.step", sheet::write(&Panel::hood(), Schema::Ap242)),
         sample("hood/hood.step", sheet::write(&Panel::hood(), Schema::Ap214)),
+        sample("plate/plate.step", plate::write(Schema::Ap214)),
         sample("trunk/trunk-ap242.step", sheet::write(&Panel::trunk(), Schema::Ap242)),
         sample("trunk/trunk.step", sheet::write(&Panel::trunk(), Schema::Ap214)),
+        sample("vamp/vamp.step", thin_solid::write("vamp", &Panel::vamp(), Schema::Ap242)),
+        sample("vase/vase.step", vase::write(Schema::Ap214)),
     ]
 }

@@ -20,6 +20,26 @@ pub enum OperateError {
     /// The selector does not fit the part.
     #[error("face: {0}")]
     Face(SelectError),
+    /// The selector of the target does not fit the part.
+    #[error("target.face: {0}")]
+    TargetFace(SelectError),
+    /// The selector of the source does not fit its part.
+    #[error("source.face: {0}")]
+    SourceFace(SelectError),
+    /// The file of the source cannot be used.
+    #[error("source.file: {file}: {reason}")]
+    SourceFile {
+        /// The file.
+        file: String,
+        /// Why.
+        reason: String,
+    },
+    /// No curve has the name.
+    #[error("source.region.curve: #{name} is no curve that was read")]
+    NoCurve {
+        /// The name.
+        name: u64,
+    },
     /// A hold does not fit the part.
     #[error("hold: {0}")]
     Hold(String),
@@ -36,8 +56,12 @@ impl OperateError {
     #[must_use]
     pub fn code(&self) -> &'static str {
         match self {
-            Self::Face(SelectError::Several { .. }) => "select.several",
-            Self::Face(_) => "select.no-match",
+            Self::Face(SelectError::Several { .. })
+            | Self::TargetFace(SelectError::Several { .. })
+            | Self::SourceFace(SelectError::Several { .. }) => "select.several",
+            Self::Face(_) | Self::TargetFace(_) | Self::SourceFace(_) => "select.no-match",
+            Self::SourceFile { .. } => "paste.source-file",
+            Self::NoCurve { .. } => "paste.no-curve",
             Self::Hold(_) => "select.no-hold",
             Self::Operation(error) => error.code(),
             Self::NoFace => "select.no-face",
@@ -55,6 +79,16 @@ pub type Operated = (ChangeSet, OperationReport);
 pub fn operate(model: &Model, source: &Source, operation: &Operation) -> Result<Operated, OperateError> {
     match operation {
         Operation::ConstrainedScale(settings) => scale(model, source, settings),
+        Operation::FeaturePaste(words) => {
+            let planned = super::paste_operate::planned(model, words)?;
+            let report = OperationReport {
+                kind: "feature_paste".to_owned(),
+                changed: changed(&planned.change_set),
+                measures: serde_json::to_value(&planned.measures).unwrap_or_default(),
+                notes: planned.notes.iter().map(|note| DiagnosticReport::new(note, source)).collect(),
+            };
+            Ok((planned.change_set, report))
+        }
     }
 }
 

@@ -5,5 +5,7 @@
 
 pub mod constrained_scale;
 pub mod error;
+pub mod feature_paste;
+pub mod net;
 
 pub use error::{Obstacle, OperationError};

@@ -4,6 +4,7 @@ mod accepted;
 mod jobs;
 mod locality;
 mod parts;
+mod paste;
 mod patho;
 #[path = "../support/mod.rs"]
 #[allow(dead_code, reason = "shared with other test binaries")]
