@@ -9,10 +9,11 @@
 
 use super::edge_samples::{EdgePoint, EdgeSampling, sample_edge};
 use super::{Brep, CoedgeId, EdgeId, FaceId, LoopId};
-use crate::geometry::nurbs::SurfaceLocator;
+use crate::geometry::nurbs::{NurbsSurface, SurfaceLocator, SurfaceProjection, Wrap};
 use crate::geometry::parameters::unwrapped;
 use crate::geometry::{Curve2d, Surface};
 use crate::math::{Point2, Point3};
+use std::cell::OnceCell;
 
 /// How loops are sampled.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -146,10 +147,30 @@ struct Place {
     singular: (bool, bool),
 }
 
+/// A locator that is built when first asked.
+struct LazyLocator<'a> {
+    nurbs: &'a NurbsSurface,
+    wrap: Wrap,
+    built: OnceCell<SurfaceLocator<'a>>,
+}
+
+impl<'a> LazyLocator<'a> {
+    fn built(&self) -> &SurfaceLocator<'a> {
+        self.built.get_or_init(|| SurfaceLocator::new(self.nurbs, self.wrap))
+    }
+
+    /// The foot point from a seed when it lies within `close`, else the closest point over the domain.
+    fn closest_near(&self, target: &Point3<f64>, seed: (f64, f64), close: f64) -> SurfaceProjection {
+        let found = self.nurbs.closest_from(target, seed, self.wrap);
+        if found.distance <= close { found } else { self.built().nearer_than(target, found) }
+    }
+}
+
 /// What a walk round a face needs at every step.
 struct Walk<'a> {
     surface: &'a Surface,
-    locator: Option<SurfaceLocator<'a>>,
+    /// The search without a guess, built when a point first needs it: pcurves that agree need none.
+    locator: Option<LazyLocator<'a>>,
     periods: (Option<f64>, Option<f64>),
     sampling: &'a LoopSampling,
     /// Distance at which a seeded projection is not trusted.
@@ -159,14 +180,16 @@ struct Walk<'a> {
 
 impl<'a> Walk<'a> {
     fn new(surface: &'a Surface, sampling: &'a LoopSampling, same_sense: bool) -> Self {
+        let periods = surface.periods();
         let (locator, size) = match surface {
             Surface::Nurbs(nurbs) => {
-                (Some(SurfaceLocator::new(nurbs, surface.wrap())), nurbs.bounding_box().diagonal())
+                let wrap = Wrap { u: periods.0.is_some(), v: periods.1.is_some() };
+                (Some(LazyLocator { nurbs, wrap, built: OnceCell::new() }), nurbs.bounding_box().diagonal())
             }
             _ => (None, 0.0),
         };
         let lost = sampling.tolerance.max(SURE_PART * size);
-        Self { surface, locator, periods: surface.periods(), sampling, lost, same_sense }
+        Self { surface, locator, periods, sampling, lost, same_sense }
     }
 
     fn around(
@@ -277,7 +300,7 @@ impl<'a> Walk<'a> {
                 (found.u, found.v)
             }
             (Some(locator), None) => {
-                let found = locator.closest(&at.point);
+                let found = locator.built().closest(&at.point);
                 (found.u, found.v)
             }
             (None, Some(seed)) => {

@@ -58,6 +58,7 @@ impl KnotVector {
     }
 
     /// Functions at `u` with derivatives up to `order`, at most 2.
+    #[inline]
     #[must_use]
     pub fn basis_derivatives(&self, u: f64, order: usize) -> LocalBasis {
         self.basis_of_span(self.span(u), u, order)
@@ -68,6 +69,7 @@ impl KnotVector {
     ///
     /// # Panics
     /// When the span is not one of `p ..= n - 1`.
+    #[inline]
     #[must_use]
     pub fn basis_of_span(&self, span: usize, u: f64, order: usize) -> LocalBasis {
         let p = self.degree();
@@ -81,7 +83,8 @@ impl KnotVector {
             }
             let lacking = p - j;
             if lacking <= order.min(2) {
-                rows[lacking] = now;
+                // Only what is set: the room for the greatest degree is many times that of a cubic.
+                rows[lacking][..=j].copy_from_slice(&now[..=j]);
             }
         }
         for (lacking, row) in rows.iter_mut().enumerate().take(order.min(2).min(p) + 1).skip(1) {

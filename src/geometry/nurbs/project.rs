@@ -8,6 +8,7 @@
 use super::evaluate::SurfaceDerivatives;
 use super::{KnotVector, NurbsCurve3, NurbsSurface};
 use crate::math::{BoundingBox, Point3, Vector3};
+use std::cell::OnceCell;
 
 /// A closest point on a curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -287,23 +288,24 @@ fn place_in((start, end): (f64, f64), x: f64, wraps: bool) -> f64 {
 /// Greatest count of samples that a locator keeps: 24 MB.
 const MAX_SAMPLES: usize = 1 << 20;
 
-/// Finds closest points on one surface without a guess. Built once, asked often.
+/// Finds closest points on one surface without a guess. Built once, asked often; a span is sampled when a
+/// search first comes near it, since most searches stay within a few.
 #[derive(Debug, Clone)]
 pub struct SurfaceLocator<'a> {
     surface: &'a NurbsSurface,
     wrap: Wrap,
     us: Vec<f64>,
     vs: Vec<f64>,
-    points: Vec<Point3<f64>>,
     cells: Vec<Cell>,
 }
 
-/// A span rectangle: the box of its control points and its ranges of samples.
+/// A span rectangle: the box of its control points, its ranges of samples, and these, row by row.
 #[derive(Debug, Clone)]
 struct Cell {
     bounds: BoundingBox,
     rows: (usize, usize),
     columns: (usize, usize),
+    points: OnceCell<Vec<Point3<f64>>>,
 }
 
 impl<'a> SurfaceLocator<'a> {
@@ -320,7 +322,6 @@ impl<'a> SurfaceLocator<'a> {
         }
         let us = span_samples(surface.knots_u(), &spans_u, per_u);
         let vs = span_samples(surface.knots_v(), &spans_v, per_v);
-        let points = surface.grid(&us, &vs);
         let control: Vec<Point3<f64>> = surface.control_points().collect();
         let (p, q, nv) = (surface.knots_u().degree(), surface.knots_v().degree(), surface.shape().1);
         let mut cells = Vec::with_capacity(spans_u.len() * spans_v.len());
@@ -331,10 +332,10 @@ impl<'a> SurfaceLocator<'a> {
                     bounds.merge(&BoundingBox::of(&control[i * nv + sv - q..=i * nv + sv]));
                 }
                 let (rows, columns) = ((a * per_u, (a + 1) * per_u), (b * per_v, (b + 1) * per_v));
-                cells.push(Cell { bounds, rows, columns });
+                cells.push(Cell { bounds, rows, columns, points: OnceCell::new() });
             }
         }
-        Self { surface, wrap, us, vs, points, cells }
+        Self { surface, wrap, us, vs, cells }
     }
 
     /// The closest point over the whole domain.
@@ -342,9 +343,20 @@ impl<'a> SurfaceLocator<'a> {
     pub fn closest(&self, target: &Point3<f64>) -> SurfaceProjection {
         let bounds: Vec<f64> = self.cells.iter().map(|c| c.bounds.distance_squared(target)).collect();
         let nearest = (0..bounds.len()).min_by(|&a, &b| bounds[a].total_cmp(&bounds[b])).unwrap_or(0);
-        let mut best = self.descend(self.best_sample(nearest, target).1, target);
+        let best = self.descend(self.best_sample(nearest, target).1, target);
+        self.closer(target, best, &bounds, Some(nearest))
+    }
+
+    /// The closest point where a good one is known: only spans whose boxes are nearer are looked into.
+    fn closer(
+        &self,
+        target: &Point3<f64>,
+        mut best: SurfaceProjection,
+        bounds: &[f64],
+        done: Option<usize>,
+    ) -> SurfaceProjection {
         let mut order: Vec<usize> = (0..bounds.len())
-            .filter(|&c| c != nearest && bounds[c] < best.distance * best.distance)
+            .filter(|&c| Some(c) != done && bounds[c] < best.distance * best.distance)
             .collect();
         order.sort_by(|&a, &b| bounds[a].total_cmp(&bounds[b]).then(a.cmp(&b)));
         for cell in order {
@@ -362,15 +374,11 @@ impl<'a> SurfaceLocator<'a> {
         best
     }
 
-    /// The foot point from a seed when it lies within `close`, else the closest point over the domain.
+    /// The closest point over the domain, where one is known that may be it: only what may be nearer is searched.
     #[must_use]
-    pub fn closest_near(&self, target: &Point3<f64>, seed: (f64, f64), close: f64) -> SurfaceProjection {
-        let found = self.descend(seed, target);
-        if found.distance <= close {
-            return found;
-        }
-        let best = self.closest(target);
-        if best.distance < found.distance { best } else { found }
+    pub fn nearer_than(&self, target: &Point3<f64>, known: SurfaceProjection) -> SurfaceProjection {
+        let bounds: Vec<f64> = self.cells.iter().map(|c| c.bounds.distance_squared(target)).collect();
+        self.closer(target, known, &bounds, None)
     }
 
     fn descend(&self, seed: (f64, f64), target: &Point3<f64>) -> SurfaceProjection {
@@ -387,12 +395,13 @@ impl<'a> SurfaceLocator<'a> {
     fn best_sample(&self, cell: usize, target: &Point3<f64>) -> (f64, (f64, f64)) {
         let cell = &self.cells[cell];
         let mut best = (f64::INFINITY, (self.us[cell.rows.0], self.vs[cell.columns.0]));
-        for i in cell.rows.0..cell.rows.1 {
-            for j in cell.columns.0..cell.columns.1 {
-                let square = (self.points[i * self.vs.len() + j] - target).norm_squared();
-                if square < best.0 {
-                    best = (square, (self.us[i], self.vs[j]));
-                }
+        let (us, vs) = (&self.us[cell.rows.0..cell.rows.1], &self.vs[cell.columns.0..cell.columns.1]);
+        let places = || us.iter().flat_map(|&u| vs.iter().map(move |&v| (u, v)));
+        let points = cell.points.get_or_init(|| places().map(|(u, v)| self.surface.point(u, v)).collect());
+        for (point, place) in points.iter().zip(places()) {
+            let square = (point - target).norm_squared();
+            if square < best.0 {
+                best = (square, place);
             }
         }
         (best.0.sqrt(), best.1)

@@ -2,7 +2,7 @@
 //! their neighbours, and chords that two faces have in common.
 
 use super::boundary::{OWN, SharedEdge};
-use super::region::{Node, Region};
+use super::region::{Node, Region, Shape};
 use super::{ATTEMPTS, TessellateError, Tolerances, Wrapped, edges};
 use crate::brep::{Brep, EdgeId, FaceId, VertexId};
 use crate::math::{Point3, Vector3};
@@ -166,9 +166,7 @@ impl<'a> Work<'a> {
             let Some(surface) = self.brep.surface_of(face).read() else { continue };
             let domain = Wrapped::of(surface);
             if let Some(region) = self.regions.get_mut(&face) {
-                region.part_chords(&|side| uses.contains_key(&side), &|uv| {
-                    domain.derivatives(uv[0], uv[1]).point
-                });
+                region.part_chords(&|side| uses.contains_key(&side), &|uv| domain.point(uv[0], uv[1]));
             }
         }
     }
@@ -237,10 +235,7 @@ fn add_region(
     if mesh.vertices.len() > Tolerances::MOST_VERTICES {
         return Err(TessellateError::TooManyVertices);
     }
-    let normal = |node: &Node| {
-        let normal = domain.derivatives(node.uv[0], node.uv[1]).normal();
-        normal.map(|n| if forward { n } else { -n })
-    };
+    let normal = |node: &Node| domain.normal(node.uv[0], node.uv[1]).map(|n| if forward { n } else { -n });
     let normals: Vec<Option<Vector3<f64>>> = region.nodes.iter().map(normal).collect();
     for corners in &region.triangles {
         let corners = if forward { *corners } else { [corners[0], corners[2], corners[1]] };

@@ -1,6 +1,6 @@
 //! Loops of a face as polygons in the parameter plane, over the shared points of the edges.
 
-use super::region::Corner;
+use super::region::{Corner, Shape};
 use super::{TessellateError, Tolerances, Wrapped};
 use crate::brep::{
     Brep, EdgeId, EdgePoint, FaceId, LoopPoint, LoopSampling, ParameterLoop, parameter_loops_with,
@@ -282,7 +282,14 @@ fn whole(context: &mut Context) -> Option<Vec<Corner>> {
 /// The corner of a loop's point: the sample of its edge with the same parameter knows the vertex.
 fn corner(brep: &Brep, at: &LoopPoint, edges: &BTreeMap<EdgeId, SharedEdge>) -> Option<Corner> {
     let shared = edges.get(&brep.coedges[at.coedge].edge)?;
-    let index = shared.samples.iter().position(|sample| sample.t.to_bits() == at.t.to_bits())?;
+    // Samples ascend or descend in their parameter.
+    let (first, last) = (shared.samples.first()?.t, shared.samples.last()?.t);
+    let found = shared.samples.binary_search_by(|sample| {
+        let order = sample.t.total_cmp(&at.t);
+        if first <= last { order } else { order.reverse() }
+    });
+    let by_search = found.ok();
+    let index = by_search.or_else(|| shared.samples.iter().position(|s| s.t.to_bits() == at.t.to_bits()))?;
     Some(Corner { uv: [at.u, at.v], vertex: shared.vertices[index], point: shared.samples[index].point })
 }
 
@@ -386,7 +393,7 @@ fn cap(context: &mut Context, mut only: Winding, inner: &[Vec<Corner>]) -> Optio
     let pole = match context.vertex_loops.first() {
         Some(vertex) => Corner { uv, ..*vertex },
         None => {
-            let point = context.surface.derivatives(uv[0], uv[1]).point;
+            let point = context.surface.point(uv[0], uv[1]);
             Corner { uv, vertex: context.push(), point }
         }
     };
@@ -433,7 +440,7 @@ fn cut(context: &mut Context, from: &Corner, to: &Corner) -> Vec<Corner> {
     let mut ahead = vec![((to.uv, to.point), 0)];
     while let Some((after, depth)) = ahead.pop() {
         let uv = [0, 1].map(|k| 0.5 * (before.0[k] + after.0[k]));
-        let point = context.surface.derivatives(uv[0], uv[1]).point;
+        let point = context.surface.point(uv[0], uv[1]);
         let off = (point - nalgebra::center(&before.1, &after.1)).norm();
         if depth < CUT_DEPTH && off > context.tolerances.chord {
             ahead.push((after, depth + 1));

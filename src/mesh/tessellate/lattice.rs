@@ -2,10 +2,10 @@
 //! plane in which well-shaped triangles are well shaped on the surface.
 
 use super::Tolerances;
-use crate::geometry::nurbs::SurfaceDerivatives;
+use super::region::Shape;
 
-/// Samples a side at which the curvature is looked at.
-const SAMPLES: usize = 17;
+/// Samples a side at which the curvature is looked at, at most; a [`Shape`] may need fewer.
+pub(super) const SAMPLES: usize = 17;
 
 /// Most lines in one direction: the face's triangles are refined afterwards where that is not enough.
 const MOST_LINES: f64 = 400.0;
@@ -31,25 +31,27 @@ impl Lattice {
     pub(super) fn new(
         [low, high]: [[f64; 2]; 2],
         tolerances: &Tolerances,
-        evaluate: impl Fn(f64, f64) -> SurfaceDerivatives,
+        shape: &impl Shape,
     ) -> Option<Self> {
         let range = [high[0] - low[0], high[1] - low[1]];
         if !range.iter().all(|r| r.is_finite() && *r > 0.0) {
             return None;
         }
-        // Cells wanted for a unit of the parameter, at each sampled line, and sums of |du| and |dv|.
-        let mut density = [[0.0f64; SAMPLES]; 2];
+        // Cells wanted for a unit of the parameter, at each sampled line, and means of |du| and |dv|.
+        let counts = shape.samples([low, high]);
+        let places = [0, 1].map(|k| -> Vec<f64> {
+            (0..counts[k]).map(|i| low[k] + range[k] * share(i, counts[k])).collect()
+        });
+        let mut density = counts.map(|count| vec![0.0f64; count]);
         let mut speed = [0.0; 2];
-        for i in 0..SAMPLES {
-            for j in 0..SAMPLES {
-                let d = evaluate(low[0] + range[0] * share(i), low[1] + range[1] * share(j));
-                let Some(normal) = d.normal() else { continue };
-                let along_u = wanted(d.du.norm(), d.duu.dot(&normal).abs(), tolerances);
-                let along_v = wanted(d.dv.norm(), d.dvv.dot(&normal).abs(), tolerances);
-                density[0][i] = density[0][i].max(along_u);
-                density[1][j] = density[1][j].max(along_v);
-                speed = [speed[0] + d.du.norm(), speed[1] + d.dv.norm()];
-            }
+        for (at, d) in shape.grid(&places[0], &places[1]).iter().enumerate() {
+            let (i, j) = (at / counts[1], at % counts[1]);
+            let Some(normal) = d.normal() else { continue };
+            let along_u = wanted(d.du.norm(), d.duu.dot(&normal).abs(), tolerances);
+            let along_v = wanted(d.dv.norm(), d.dvv.dot(&normal).abs(), tolerances);
+            density[0][i] = density[0][i].max(along_u);
+            density[1][j] = density[1][j].max(along_v);
+            speed = [speed[0] + d.du.norm(), speed[1] + d.dv.norm()];
         }
         let lines = [0, 1].map(|k| divide(low[k], range[k], &density[k]));
         let cells = [0, 1].map(|k| mean(&density[k]) * range[k]);
@@ -61,13 +63,13 @@ impl Lattice {
 
 /// Place of a sample within its range: inside, so that poles are passed over.
 #[expect(clippy::cast_precision_loss, reason = "a small count")]
-fn share(sample: usize) -> f64 {
-    (sample as f64 + 0.5) / SAMPLES as f64
+fn share(sample: usize, count: usize) -> f64 {
+    (sample as f64 + 0.5) / count as f64
 }
 
 #[expect(clippy::cast_precision_loss, reason = "a small count")]
-fn mean(values: &[f64; SAMPLES]) -> f64 {
-    values.iter().sum::<f64>() / SAMPLES as f64
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// Cells for a unit of a parameter with the given speed and bend (second derivative along the normal). A cell
@@ -82,8 +84,8 @@ fn wanted(speed: f64, bend: f64, tolerances: &Tolerances) -> f64 {
 /// Inner lines that share the sum of the density evenly.
 #[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, reason = "at most MOST_LINES")]
 #[expect(clippy::cast_sign_loss, reason = "densities are not negative")]
-fn divide(low: f64, range: f64, density: &[f64; SAMPLES]) -> Vec<f64> {
-    let step = range / SAMPLES as f64;
+fn divide(low: f64, range: f64, density: &[f64]) -> Vec<f64> {
+    let step = range / density.len() as f64;
     let total: f64 = density.iter().sum::<f64>() * step;
     let count = total.ceil().min(MOST_LINES) as usize;
     let mut lines = Vec::with_capacity(count);

@@ -17,11 +17,13 @@ mod untangle;
 
 use super::Mesh;
 use crate::brep::{BodyId, Brep, EdgeId, FaceId, ParameterLoopError, VertexId};
-use crate::geometry::{Carried, Curve, Surface};
-use crate::math::Point3;
+use crate::geometry::nurbs::KnotVector;
+use crate::geometry::{Carried, Curve, Surface, SurfaceDerivatives};
+use crate::math::{Point3, Vector3};
 use boundary::{Context, SharedEdge};
+use lattice::SAMPLES;
 use rayon::prelude::*;
-use region::{Corner, Region, RegionError};
+use region::{Corner, Region, RegionError, Shape};
 use std::collections::BTreeMap;
 
 /// How far triangles may be from the surfaces.
@@ -267,9 +269,8 @@ fn region_of(
     let vertex_loops = vertex_loops.as_slice();
     let mut context = Context { brep, face, surface: &domain, tolerances, edges, vertex_loops, own: 0 };
     let mut loops = boundary::loops(&mut context)?;
-    let evaluate = |u: f64, v: f64| domain.derivatives(u, v);
     let run =
-        |loops: &[Vec<Corner>]| region::triangulate(loops, tolerances, Tolerances::MOST_VERTICES, &evaluate);
+        |loops: &[Vec<Corner>]| region::triangulate(loops, tolerances, Tolerances::MOST_VERTICES, &domain);
     let mut result = run(&loops);
     if matches!(result, Err(RegionError::Crossing(_) | RegionError::Coincident(_))) {
         for corners in &mut loops {
@@ -300,13 +301,78 @@ impl<'a> Wrapped<'a> {
         Self { surface, turns: [turn(domain.0.0, periods.0), turn(domain.1.0, periods.1)] }
     }
 
-    fn derivatives(&self, u: f64, v: f64) -> crate::geometry::nurbs::SurfaceDerivatives {
-        let wrap = |at: f64, turn: Option<(f64, f64)>| match turn {
-            Some((start, period)) if !(start..=start + period).contains(&at) => {
-                start + (at - start).rem_euclid(period)
-            }
-            _ => at,
+    fn wrapped(&self, u: f64, v: f64) -> (f64, f64) {
+        (wrap(u, self.turns[0]), wrap(v, self.turns[1]))
+    }
+}
+
+/// A parameter within a domain of the given start and length, where there is one.
+fn wrap(at: f64, turn: Option<(f64, f64)>) -> f64 {
+    match turn {
+        Some((start, period)) if !(start..=start + period).contains(&at) => {
+            start + (at - start).rem_euclid(period)
+        }
+        _ => at,
+    }
+}
+
+/// Samples a side for a surface that bends evenly, or a single span of a B-spline.
+const FEWEST_SAMPLES: usize = 5;
+
+/// Samples for each further span of a B-spline.
+const SPAN_SAMPLES: usize = 3;
+
+impl Shape for Wrapped<'_> {
+    fn derivatives(&self, u: f64, v: f64) -> SurfaceDerivatives {
+        let (u, v) = self.wrapped(u, v);
+        self.surface.derivatives(u, v)
+    }
+
+    fn point(&self, u: f64, v: f64) -> Point3<f64> {
+        let (u, v) = self.wrapped(u, v);
+        self.surface.point(u, v)
+    }
+
+    fn normal(&self, u: f64, v: f64) -> Option<Vector3<f64>> {
+        let (u, v) = self.wrapped(u, v);
+        match self.surface {
+            // Without second derivatives.
+            Surface::Nurbs(nurbs) => nurbs.normal(u, v),
+            surface => surface.normal(u, v),
+        }
+    }
+
+    fn grid(&self, us: &[f64], vs: &[f64]) -> Vec<SurfaceDerivatives> {
+        let wrapped = |at: &[f64], turn| -> Vec<f64> { at.iter().map(|&at| wrap(at, turn)).collect() };
+        let (us, vs) = (wrapped(us, self.turns[0]), wrapped(vs, self.turns[1]));
+        match self.surface {
+            Surface::Nurbs(nurbs) => nurbs.grid_derivatives(&us, &vs),
+            surface => us
+                .iter()
+                .flat_map(|&u| vs.iter().map(move |&v| (u, v)))
+                .map(|(u, v)| surface.derivatives(u, v))
+                .collect(),
+        }
+    }
+
+    fn samples(&self, [low, high]: [[f64; 2]; 2]) -> [usize; 2] {
+        let spans = |knots: &KnotVector, k: usize| {
+            let all = knots.distinct().0;
+            // Over a seam the knots stand elsewhere: then all of them count.
+            let beyond = all.first().is_some_and(|&first| low[k] < first)
+                || all.last().is_some_and(|&last| high[k] > last);
+            let inner = all.iter().filter(|&&knot| beyond || (low[k] < knot && knot < high[k])).count();
+            (SPAN_SAMPLES * inner + FEWEST_SAMPLES).min(SAMPLES)
         };
-        self.surface.derivatives(wrap(u, self.turns[0]), wrap(v, self.turns[1]))
+        match self.surface {
+            Surface::Plane(_) => [1; 2],
+            // The bend is the same all along, or changes with one parameter steadily.
+            Surface::Cylinder { .. }
+            | Surface::Cone { .. }
+            | Surface::Sphere { .. }
+            | Surface::Torus { .. } => [FEWEST_SAMPLES; 2],
+            Surface::Nurbs(nurbs) => [spans(nurbs.knots_u(), 0), spans(nurbs.knots_v(), 1)],
+            _ => [SAMPLES; 2],
+        }
     }
 }

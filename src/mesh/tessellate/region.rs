@@ -5,11 +5,11 @@
 
 use super::Tolerances;
 use super::boundary::OWN;
-use super::lattice::Lattice;
+use super::lattice::{Lattice, SAMPLES};
 use crate::geometry::nurbs::SurfaceDerivatives;
-use crate::math::Point3;
+use crate::math::{Point3, Vector3};
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, PositionInTriangulation, Triangulation};
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet, VecDeque};
 
 /// Rounds of refinement. Each at least halves the triangles that need it, so the sag falls to 1/4 or less;
 /// what is left after so many rounds is not curvature but a gap or a fold in the data.
@@ -21,6 +21,38 @@ const CLEARANCE: f64 = 0.35;
 /// Triangles with no side longer than this many chord tolerances are left alone however steep they stand:
 /// the gap between an edge and its surface would be refined for ever.
 const SMALLEST: f64 = 4.0;
+
+/// What a region lies on, over the plane of its parameters.
+pub(super) trait Shape {
+    /// Point and derivatives to second order.
+    fn derivatives(&self, u: f64, v: f64) -> SurfaceDerivatives;
+
+    /// The point alone, which is often much cheaper.
+    fn point(&self, u: f64, v: f64) -> Point3<f64> {
+        self.derivatives(u, v).point
+    }
+
+    /// The unit normal; `None` where there is none.
+    fn normal(&self, u: f64, v: f64) -> Option<Vector3<f64>> {
+        self.derivatives(u, v).normal()
+    }
+
+    /// As [`derivatives`](Self::derivatives) over the grid `us × vs`, row by row in `u`.
+    fn grid(&self, us: &[f64], vs: &[f64]) -> Vec<SurfaceDerivatives> {
+        us.iter().flat_map(|&u| vs.iter().map(move |&v| self.derivatives(u, v))).collect()
+    }
+
+    /// Samples in each direction that show how it bends between two corners; at least one.
+    fn samples(&self, _: [[f64; 2]; 2]) -> [usize; 2] {
+        [SAMPLES; 2]
+    }
+}
+
+impl<F: Fn(f64, f64) -> SurfaceDerivatives> Shape for F {
+    fn derivatives(&self, u: f64, v: f64) -> SurfaceDerivatives {
+        self(u, v)
+    }
+}
 
 /// A point of the boundary: parameters on this face, and the mesh's vertex.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -147,27 +179,40 @@ struct Work<'a, E> {
     /// Pairs of sites between which an odd number of boundary pieces run.
     walls: BTreeSet<(usize, usize)>,
     lattice: Lattice,
-    evaluate: &'a E,
+    shape: &'a E,
     budget: usize,
+    /// Triangles, by their nodes in ascending order, that were found to be near enough.
+    settled: HashSet<[u32; 3]>,
+    /// The distances of the middles of sides from the surface, by their nodes in ascending order.
+    sides: HashMap<[u32; 2], f64>,
 }
 
 /// Triangulates what lies inside an odd number of loops.
 ///
 /// Points at one place of the parameter plane with different vertices count as crossing boundaries.
-pub(super) fn triangulate<E: Fn(f64, f64) -> SurfaceDerivatives>(
+pub(super) fn triangulate<E: Shape>(
     loops: &[Vec<Corner>],
     tolerances: &Tolerances,
     budget: usize,
-    evaluate: &E,
+    shape: &E,
 ) -> Result<Region, RegionError> {
     let corners = || loops.iter().flatten();
     let first = corners().next().ok_or(RegionError::Degenerate)?.uv;
     let bounds = corners().fold([first; 2], |[low, high], corner| {
         [[0, 1].map(|k| low[k].min(corner.uv[k])), [0, 1].map(|k| high[k].max(corner.uv[k]))]
     });
-    let lattice = Lattice::new(bounds, tolerances, evaluate).ok_or(RegionError::Degenerate)?;
+    let lattice = Lattice::new(bounds, tolerances, shape).ok_or(RegionError::Degenerate)?;
     let cdt = ConstrainedDelaunayTriangulation::new();
-    let mut work = Work { nodes: Vec::new(), cdt, walls: BTreeSet::new(), lattice, evaluate, budget };
+    let mut work = Work {
+        nodes: Vec::new(),
+        cdt,
+        walls: BTreeSet::new(),
+        lattice,
+        shape,
+        budget,
+        settled: HashSet::new(),
+        sides: HashMap::new(),
+    };
     work.add_boundary(loops)?;
     work.add_lattice(loops)?;
     for _ in 0..ROUNDS {
@@ -188,7 +233,7 @@ pub(super) fn triangulate<E: Fn(f64, f64) -> SurfaceDerivatives>(
     Ok(Region { nodes: work.nodes, triangles, turning })
 }
 
-impl<E: Fn(f64, f64) -> SurfaceDerivatives> Work<'_, E> {
+impl<E: Shape> Work<'_, E> {
     fn position(&self, uv: [f64; 2]) -> Point2<f64> {
         let tidy = |k: usize| {
             let scaled = uv[k] * self.lattice.scale[k];
@@ -343,38 +388,52 @@ impl<E: Fn(f64, f64) -> SurfaceDerivatives> Work<'_, E> {
     }
 
     /// Parameters where a triangle or a side between two triangles is off the surface by more than the
-    /// chord tolerance: for each triangle the worst.
-    fn too_coarse(&self, tolerances: &Tolerances) -> Vec<[f64; 2]> {
+    /// chord tolerance: for each triangle the worst. What was near enough before is not looked at again.
+    fn too_coarse(&mut self, tolerances: &Tolerances) -> Vec<[f64; 2]> {
         let inside = self.inside();
         let mut wanted = Vec::new();
-        for face in self.cdt.inner_faces().filter(|face| inside[face.fix().index()]) {
-            let [a, b, c] = face.vertices().map(|v| self.nodes[v.data().node as usize]);
+        let Self { cdt, nodes, settled, sides: known, shape, .. } = self;
+        let smallest = SMALLEST * tolerances.chord;
+        for face in cdt.inner_faces().filter(|face| inside[face.fix().index()]) {
+            let corners = face.vertices().map(|v| v.data().node);
+            let mut key = corners;
+            key.sort_unstable();
+            if settled.contains(&key) {
+                continue;
+            }
+            let [a, b, c] = corners.map(|node| nodes[node as usize]);
             let sides = [(b.point - a.point).norm(), (c.point - b.point).norm(), (a.point - c.point).norm()];
-            let smallest = SMALLEST * tolerances.chord;
             if sides.iter().all(|&side| side < smallest) {
+                settled.insert(key);
                 continue;
             }
             let middle = [0, 1].map(|k| (a.uv[k] + b.uv[k] + c.uv[k]) / 3.0);
             let normal = (b.point - a.point).cross(&(c.point - a.point)).try_normalize(0.0);
-            let off = normal.map_or(0.0, |n| (self.point(middle) - a.point).dot(&n).abs());
+            let off = normal.map_or(0.0, |n| (shape.point(middle[0], middle[1]) - a.point).dot(&n).abs());
             let mut worst = (off, middle);
             for edge in face.adjacent_edges().into_iter().filter(|edge| !edge.is_constraint_edge()) {
-                let [from, to] = edge.vertices().map(|v| self.nodes[v.data().node as usize]);
+                let mut ends = edge.vertices().map(|v| v.data().node);
+                ends.sort_unstable();
+                let [from, to] = ends.map(|node| nodes[node as usize]);
                 let middle = [0, 1].map(|k| 0.5 * (from.uv[k] + to.uv[k]));
-                let off = off_segment(&self.point(middle), &from.point, &to.point);
+                let off = *known.entry(ends).or_insert_with(|| {
+                    off_segment(&shape.point(middle[0], middle[1]), &from.point, &to.point)
+                });
                 if off > worst.0 {
                     worst = (off, middle);
                 }
             }
             if worst.0 > tolerances.chord {
                 wanted.push(worst.1);
+            } else {
+                settled.insert(key);
             }
         }
         wanted
     }
 
     fn point(&self, uv: [f64; 2]) -> Point3<f64> {
-        (self.evaluate)(uv[0], uv[1]).point
+        self.shape.point(uv[0], uv[1])
     }
 }
 
@@ -397,7 +456,6 @@ fn off_segment(point: &Point3<f64>, from: &Point3<f64>, to: &Point3<f64>) -> f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Vector3;
     use std::f64::consts::{PI, TAU};
 
     const TOLERANCES: Tolerances = Tolerances { chord: 0.01, angle: 0.3 };
