@@ -66,7 +66,7 @@ fn openscad_accepts_the_meshes_of_solids() {
     let mut paths = Vec::new();
     files(&corpus.join("step"), &mut paths);
     let (mut count, mut accepted) = (0u32, 0u32);
-    let mut say = |line: &str| writeln!(std::io::stderr(), "{line}").expect("standard error is open");
+    let say = |line: &str| writeln!(std::io::stderr(), "{line}").expect("standard error is open");
     for path in paths {
         let bytes = std::fs::read(&path).expect("a file of the corpus");
         let mut sink = Diagnostics::default();
