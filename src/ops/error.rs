@@ -1,6 +1,7 @@
 //! Why an operation cannot be done on a part.
 
 use super::constrained_scale::ScaleError;
+use super::detail_transfer::TransferError;
 
 /// An element that cannot take part, and why.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -19,6 +20,9 @@ pub enum OperationError {
     /// A face could not be scaled.
     #[error(transparent)]
     Scale(#[from] ScaleError),
+    /// Detail could not be carried over.
+    #[error(transparent)]
+    Transfer(#[from] TransferError),
     /// Elements in the scope have no image under the motion that they would need.
     #[error("{} cannot follow: {}", count(.obstacles), list(.obstacles))]
     CannotFollow {
@@ -90,6 +94,7 @@ impl OperationError {
     pub fn code(&self) -> &'static str {
         match self {
             Self::Scale(error) => error.code(),
+            Self::Transfer(error) => error.code(),
             Self::CannotFollow { .. } => "scale.cannot-follow",
             Self::NeighboursOutside { .. } => "scale.neighbours-outside",
             Self::NothingToHold { .. } => "scale.nothing-to-hold",

@@ -1,6 +1,9 @@
 //! Wavelets of B-splines and the transfer of detail between curves: vectors of another program, laws, and jobs.
 
+mod curves;
 mod filters;
+mod jobs;
+mod transfers;
 
 use resurf::geometry::nurbs::KnotVector;
 use serde_json::Value;
