@@ -46,12 +46,13 @@ fn planned(path: &Path, printer: &mut Printer) -> Result<(Job, Vec<Part>), u8> {
         exit_code::USAGE
     })?;
     let json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
-    let job = read(&text, if json { Syntax::Json } else { Syntax::Toml }).map_err(|error| {
+    let mut job = read(&text, if json { Syntax::Json } else { Syntax::Toml }).map_err(|error| {
         show_job_error(printer, &name, &text, &error);
         exit_code::USAGE
     })?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let parts = plan::parts(&job, folder).map_err(|error| {
+    let planned = plan::resolve(&mut job, folder).and_then(|()| plan::parts(&job, folder));
+    let parts = planned.map_err(|error| {
         printer.message(Severity::Error, &format!("{name}: {error}"));
         exit_code::USAGE
     })?;

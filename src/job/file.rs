@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use serde::de;
 
+pub use super::detail_file::DetailTransfer;
 use super::selector::Selector;
 use crate::units::Length;
 
@@ -213,12 +214,15 @@ pub enum ValidatorName {
 pub enum Operation {
     /// Scale a part, while chosen features keep their shape and size.
     ConstrainedScale(Box<ConstrainedScale>),
+    /// Carry the detail of one curve onto another.
+    DetailTransfer(Box<DetailTransfer>),
 }
 
 #[derive(Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum OperationKind {
     ConstrainedScale,
+    DetailTransfer,
 }
 
 impl<'de> Deserialize<'de> for Operation {
@@ -242,6 +246,11 @@ impl<'de> Deserialize<'de> for Operation {
                         let scale = ConstrainedScale::deserialize(rest)?;
                         scale.check().map_err(de::Error::custom)?;
                         Ok(Operation::ConstrainedScale(Box::new(scale)))
+                    }
+                    OperationKind::DetailTransfer => {
+                        let transfer = DetailTransfer::deserialize(rest)?;
+                        transfer.check().map_err(de::Error::custom)?;
+                        Ok(Operation::DetailTransfer(Box::new(transfer)))
                     }
                 }
             }

@@ -20,6 +20,20 @@ pub enum OperateError {
     /// The selector does not fit the part.
     #[error("face: {0}")]
     Face(SelectError),
+    /// The selector of the target curve does not fit the part.
+    #[error("target.curve: {0}")]
+    TargetCurve(SelectError),
+    /// The selector of the source curve does not fit its part.
+    #[error("source.curve: {0}")]
+    SourceCurve(SelectError),
+    /// The file of the source cannot be used.
+    #[error("source.file: {file}: {reason}")]
+    SourceFile {
+        /// The file.
+        file: String,
+        /// Why.
+        reason: String,
+    },
     /// A hold does not fit the part.
     #[error("hold: {0}")]
     Hold(String),
@@ -36,8 +50,11 @@ impl OperateError {
     #[must_use]
     pub fn code(&self) -> &'static str {
         match self {
-            Self::Face(SelectError::Several { .. }) => "select.several",
-            Self::Face(_) => "select.no-match",
+            Self::Face(SelectError::Several { .. })
+            | Self::TargetCurve(SelectError::SeveralCurves { .. })
+            | Self::SourceCurve(SelectError::SeveralCurves { .. }) => "select.several",
+            Self::Face(_) | Self::TargetCurve(_) | Self::SourceCurve(_) => "select.no-match",
+            Self::SourceFile { .. } => "job.source-file",
             Self::Hold(_) => "select.no-hold",
             Self::Operation(error) => error.code(),
             Self::NoFace => "select.no-face",
@@ -55,6 +72,16 @@ pub type Operated = (ChangeSet, OperationReport);
 pub fn operate(model: &Model, source: &Source, operation: &Operation) -> Result<Operated, OperateError> {
     match operation {
         Operation::ConstrainedScale(settings) => scale(model, source, settings),
+        Operation::DetailTransfer(words) => {
+            let planned = super::detail_operate::planned(model, words)?;
+            let report = OperationReport {
+                kind: "detail_transfer".to_owned(),
+                changed: changed(&planned.change_set),
+                measures: serde_json::to_value(&planned.measures).unwrap_or_default(),
+                notes: planned.notes.iter().map(|note| DiagnosticReport::new(note, source)).collect(),
+            };
+            Ok((planned.change_set, report))
+        }
     }
 }
 

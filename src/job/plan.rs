@@ -6,6 +6,7 @@ use std::path::{Component, Path, PathBuf};
 use globset::{GlobBuilder, GlobMatcher};
 
 use super::Job;
+use super::file::Operation;
 use crate::document::Format;
 
 /// One part of a run.
@@ -80,6 +81,27 @@ fn below(pattern: &str) -> String {
 
 fn near(nearest: &Option<String>) -> String {
     nearest.as_ref().map(|name| format!("; the nearest name is `{name}`")).unwrap_or_default()
+}
+
+/// Puts the job file's folder before the files that its operations read, which must exist.
+///
+/// # Errors
+/// [`PlanError::NoMatch`].
+pub fn resolve(job: &mut Job, folder: &Path) -> Result<(), PlanError> {
+    for operation in &mut job.operation {
+        let file = match operation {
+            Operation::ConstrainedScale(_) => None,
+            Operation::DetailTransfer(transfer) => transfer.source.file.as_mut(),
+        };
+        let Some(file) = file else { continue };
+        let path = folder.join(&*file);
+        if !path.is_file() {
+            let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+            return Err(PlanError::NoMatch { pattern: file.clone(), nearest: nearest_file(&path, &name) });
+        }
+        *file = path.to_string_lossy().into_owned();
+    }
+    Ok(())
 }
 
 /// The parts of a job, sorted by path; `folder` is the job file's.

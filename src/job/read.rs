@@ -178,7 +178,7 @@ mod tests {
              \"kind\": \"constrained_scale\", \"face\": [\"#1\", {\"near\": [0, 0, 1]}]}]}";
         let job = read(&toml, Syntax::Toml).expect("TOML");
         assert_eq!(job, read(json, Syntax::Json).expect("JSON"));
-        let Operation::ConstrainedScale(scale) = &job.operation[0];
+        let Operation::ConstrainedScale(scale) = &job.operation[0] else { panic!("a scaling") };
         assert_eq!(scale.factors.0, [1.0, 2.5, 3.0]);
         assert_eq!(scale.hold, [Hold::Edge(7)]);
         assert_eq!(scale.center.expect("a centre")[0], LengthSetting(Length::Metres(1e-3)));
