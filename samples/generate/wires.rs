@@ -28,7 +28,9 @@ fn cubic(level: u32, point: impl Fn(f64) -> Point) -> Curve {
 fn source(level: u32) -> Curve {
     match level {
         3 => cubic(3, |s| [120.0 * s, 6.0 * (6.0 * PI * s).sin(), 0.0]),
-        4 => cubic(4, |s| [120.0 * s, 5.0 * (10.0 * PI * s).sin() + 2.0 * (4.0 * PI * s).cos(), 1.5 * (12.0 * s).sin()]),
+        4 => cubic(4, |s| {
+            [120.0 * s, 5.0 * (10.0 * PI * s).sin() + 2.0 * (4.0 * PI * s).cos(), 1.5 * (12.0 * s).sin()]
+        }),
         _ => cubic(5, |s| {
             let wave = 1.0 - (2.0 * s - 1.0).powi(2);
             [120.0 * s, 4.0 * wave * (22.0 * PI * s).sin(), 2.0 * wave * (14.0 * PI * s).cos()]

@@ -14,6 +14,7 @@ pub struct DetailTransfer {
     /// The curve that gives detail.
     pub source: DetailSource,
     /// The curve that is changed: one that belongs to no face.
+    #[serde(default)]
     pub target: DetailTarget,
     /// Levels of detail, counted from the finest, which is 1: `"all"` or a list.
     #[serde(default)]
@@ -168,7 +169,9 @@ impl<'de> Deserialize<'de> for LevelsSetting {
                 if text == "all" {
                     return Ok(LevelsSetting::All);
                 }
-                Err(E::custom(format!("`{text}` are no levels; expected \"all\" or a list of numbers from 1")))
+                Err(E::custom(format!(
+                    "`{text}` are no levels; expected \"all\" or a list of numbers from 1"
+                )))
             }
             fn visit_seq<A: de::SeqAccess<'de>>(self, items: A) -> Result<LevelsSetting, A::Error> {
                 let levels = Vec::<usize>::deserialize(de::value::SeqAccessDeserializer::new(items))?;
@@ -315,7 +318,9 @@ impl TryFrom<[f64; 2]> for Interval {
         if 0.0 <= from && from < to && to <= 1.0 {
             return Ok(Self([from, to]));
         }
-        Err(format!("[{from}, {to}] is no part of a curve; expected two numbers from 0 to 1, the lesser first"))
+        Err(format!(
+            "[{from}, {to}] is no part of a curve; expected two numbers from 0 to 1, the lesser first"
+        ))
     }
 }
 

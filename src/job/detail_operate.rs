@@ -10,9 +10,7 @@ use super::operate::OperateError;
 use super::part::Read;
 use super::select_curve;
 use crate::model::Model;
-use crate::ops::detail_transfer::{
-    Existing, Frame, LevelChoice, Params, Plan, Scale, Settings, plan,
-};
+use crate::ops::detail_transfer::{Existing, Frame, LevelChoice, Params, Plan, Scale, Settings, plan};
 use crate::units::LengthUnit;
 
 /// Plans a transfer onto a model.

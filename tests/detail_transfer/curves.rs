@@ -87,5 +87,8 @@ fn composites_keep_their_joints() {
 #[test]
 fn what_has_no_ends_is_refused() {
     let error = prepare(&line(), "#7", 1e-3).expect_err("a refusal");
-    assert_eq!((error.code(), error.to_string().as_str()), ("detail.unusable-curve", "#7: a line has no ends of its own"));
+    assert_eq!(
+        (error.code(), error.to_string().as_str()),
+        ("detail.unusable-curve", "#7: a line has no ends of its own")
+    );
 }

@@ -2,7 +2,6 @@
 
 mod curves;
 mod filters;
-mod jobs;
 mod transfers;
 
 use resurf::geometry::nurbs::KnotVector;

@@ -77,7 +77,8 @@ fn transfers_in_the_local_frame_are_those_of_the_vectors() {
 
 /// A wavy curve of size 30 over uneven knots.
 fn wavy(degree: usize, spans: usize, seed: f64) -> Spline {
-    let inner = (1..spans).map(|i| (i as f64 + 0.4 * (f64::from(i as u32) * 1.3 + seed).sin()) / spans as f64);
+    let inner =
+        (1..spans).map(|i| (i as f64 + 0.4 * (f64::from(i as u32) * 1.3 + seed).sin()) / spans as f64);
     let all = std::iter::repeat_n(0.0, degree + 1).chain(inner).chain(std::iter::repeat_n(1.0, degree + 1));
     let knots = KnotVector::new(degree, all.collect()).expect("good knots");
     let point = |g: &f64| {
@@ -198,10 +199,8 @@ fn nalgebra_turn(angle: f64) -> Matrix3<f64> {
 fn what_cannot_be_done_is_refused() {
     let (source, target) = (wavy(3, 24, 1.0), wavy(3, 7, 2.0));
     let refused = |settings: Settings| transfer(&target, &source, &settings).expect_err("a refusal").code();
-    let these = |levels: &[usize]| Settings {
-        levels: LevelChoice::These(levels.to_vec()),
-        ..Settings::default()
-    };
+    let these =
+        |levels: &[usize]| Settings { levels: LevelChoice::These(levels.to_vec()), ..Settings::default() };
     assert_eq!(refused(these(&[1, 9])), "detail.no-such-level");
     assert_eq!(refused(Settings { gains: vec![1.0; 3], ..these(&[1, 2]) }), "detail.gain-count");
     assert_eq!(refused(Settings { ends: 4, ..Settings::default() }), "detail.no-wavelets");
@@ -209,7 +208,10 @@ fn what_cannot_be_done_is_refused() {
     assert_eq!(refused(part(0.2, 0.5, 0)), "detail.partial-needs-ends");
     assert_eq!(refused(part(0.5, 0.2, 1)), "detail.bad-interval");
     assert_eq!(refused(part(0.5, 1.2, 1)), "detail.bad-interval");
-    assert_eq!(refused(Settings { gains: vec![1e308; 1], scale: Scale::Factor(1e308), ..Settings::default() }), "detail.not-finite");
+    assert_eq!(
+        refused(Settings { gains: vec![1e308; 1], scale: Scale::Factor(1e308), ..Settings::default() }),
+        "detail.not-finite"
+    );
     let smooth = wavy(3, 1, 0.0);
     let error = transfer(&target, &smooth, &Settings::default()).expect_err("a refusal");
     assert!(matches!(error, TransferError::NoLevels { controls: 4, degree: 3, .. }));

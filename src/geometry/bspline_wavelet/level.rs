@@ -190,11 +190,7 @@ fn base_factor(coarse: &KnotVector, ends: usize) -> Result<BandedCholesky, NotPo
 }
 
 /// Factor of `Qᵀ G Q`.
-fn detail_factor(
-    p: usize,
-    wavelets: &Wavelets,
-    gram: &[f64],
-) -> Result<BandedCholesky, NotPositiveDefinite> {
+fn detail_factor(p: usize, wavelets: &Wavelets, gram: &[f64]) -> Result<BandedCholesky, NotPositiveDefinite> {
     let count = wavelets.count();
     let last = |j: usize| {
         let (first, column) = wavelets.column(j);

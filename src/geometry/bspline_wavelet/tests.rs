@@ -26,9 +26,8 @@ fn inner_columns_are_the_cardinal_wavelets() {
     // Chui and Wang 1992: the coefficients of the semi-orthogonal wavelets, up to norm and sign.
     let linear: &[f64] = &[1.0, -6.0, 10.0, -6.0, 1.0];
     let quadratic: &[f64] = &[1.0, -29.0, 147.0, -303.0, 303.0, -147.0, 29.0, -1.0];
-    let cubic: &[f64] = &[
-        1.0, -124.0, 1677.0, -7904.0, 18482.0, -24264.0, 18482.0, -7904.0, 1677.0, -124.0, 1.0,
-    ];
+    let cubic: &[f64] =
+        &[1.0, -124.0, 1677.0, -7904.0, 18482.0, -24264.0, 18482.0, -7904.0, 1677.0, -124.0, 1.0];
     for (degree, known) in [(1, linear), (2, quadratic), (3, cubic)] {
         let level = level(&uniform(degree, 32), 0);
         let (_, column) = level.wavelet(level.wavelet_count() / 2);

@@ -24,7 +24,9 @@ pub enum TransferError {
         tolerance: f64,
     },
     /// The source has no detail to give.
-    #[error("{curve}: {controls} control points of degree {degree} leave no knot to remove, so there is no detail")]
+    #[error(
+        "{curve}: {controls} control points of degree {degree} leave no knot to remove, so there is no detail"
+    )]
     NoLevels {
         /// Name of the source.
         curve: String,
@@ -64,7 +66,9 @@ pub enum TransferError {
     #[error("free ends would open the target, which is closed; hold them in position at least")]
     OpensSeam,
     /// A coarse curve without direction.
-    #[error("the coarse {curve} curve has no length or direction near the parameter {at}, so it has no frame")]
+    #[error(
+        "the coarse {curve} curve has no length or direction near the parameter {at}, so it has no frame"
+    )]
     DegenerateBase {
         /// `source` or `target`.
         curve: &'static str,
@@ -75,7 +79,9 @@ pub enum TransferError {
     #[error("the result is not finite; gain or scale are too great")]
     NotFinite,
     /// The curve is an edge of faces.
-    #[error("{curve} is an edge of {faces}; moved alone it would leave its faces, and only free curves are changed")]
+    #[error(
+        "{curve} is an edge of {faces}; moved alone it would leave its faces, and only free curves are changed"
+    )]
     EdgeOfFaces {
         /// Name of the curve.
         curve: String,

@@ -58,12 +58,7 @@ pub(super) fn frames(curve: &Spline, at: &[f64], normal: &Vector3<f64>) -> Resul
 }
 
 /// A normal reflected from one point of a curve to the next.
-fn reflected(
-    n: &Vector3<f64>,
-    t: &Vector3<f64>,
-    step: &Vector3<f64>,
-    next: &Vector3<f64>,
-) -> Vector3<f64> {
+fn reflected(n: &Vector3<f64>, t: &Vector3<f64>, step: &Vector3<f64>, next: &Vector3<f64>) -> Vector3<f64> {
     let mirror = |v: &Vector3<f64>, plane: &Vector3<f64>| {
         let square = plane.norm_squared();
         if square > 0.0 { v - plane * (2.0 / square * plane.dot(v)) } else { *v }

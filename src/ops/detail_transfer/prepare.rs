@@ -44,12 +44,7 @@ fn unusable(name: &str, reason: String) -> TransferError {
     TransferError::Curve { curve: name.to_owned(), reason }
 }
 
-fn over(
-    curve: &Curve,
-    range: (f64, f64),
-    name: &str,
-    tolerance: f64,
-) -> Result<Prepared, TransferError> {
+fn over(curve: &Curve, range: (f64, f64), name: &str, tolerance: f64) -> Result<Prepared, TransferError> {
     if let Curve::Composite(whole) = curve {
         return composite(whole, name, tolerance);
     }

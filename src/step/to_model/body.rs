@@ -262,7 +262,8 @@ impl<'p> Bodies<'p> {
         }
         match curve::resolve(builder.scope, name, Trims::Keep) {
             Ok((inner, _)) if seen.insert(inner) => {
-                let own = [name, inner].map(|name| builder.scope.view(name).map(|view| view.text("name").into_owned()));
+                let own = [name, inner]
+                    .map(|name| builder.scope.view(name).map(|view| view.text("name").into_owned()));
                 let own = own.into_iter().flatten().find(|name| !name.is_empty());
                 let of_set = || set.map(|set| set.text("name").into_owned());
                 self.free_curve_names.push(own.or_else(of_set).unwrap_or_default());
