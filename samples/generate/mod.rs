@@ -1,16 +1,20 @@
-//! Sample parts from formulas: car panels with elliptic holes, one of them once more as a thin solid,
-//! an assembly of two, and wires with and without detail.
+//! Sample parts from formulas: car panels with elliptic holes, one of them once more as a thin solid, an
+//! assembly of two; sheets with features, and a plate, a vase and a shell to take them; wires with and without
+//! detail.
 //!
 //! Nothing here uses the library: a sample that the library helped to write could not tell on it. Every
 //! coordinate is rounded to [`records::DECIMALS`] decimals, so that the last bit of somebody's sine does
 //! not change a file.
 
 mod assembly;
+mod feature;
 mod panel;
+mod plate;
 mod records;
 mod sheet;
 mod spline;
 mod thin_solid;
+mod vase;
 mod wires;
 
 use panel::Panel;
@@ -36,10 +40,16 @@ pub fn all() -> Vec<Sample> {
         sample("curves/sources.step", wires::sources()),
         sample("door/door-ap242.step", sheet::write(&Panel::door(), Schema::Ap242)),
         sample("door/door.step", sheet::write(&Panel::door(), Schema::Ap214)),
-        sample("door-solid/door-solid.step", thin_solid::write(&Panel::door(), Schema::Ap242)),
+        sample("door-solid/door-solid.step", thin_solid::write("door-solid", &Panel::door(), Schema::Ap242)),
+        sample("features/bump.step", sheet::write(&feature::bump(), Schema::Ap214)),
+        sample("features/groove.step", sheet::write(&feature::groove(), Schema::Ap214)),
+        sample("features/symbol.step", sheet::write(&feature::symbol(), Schema::Ap242)),
         sample("hood/hood-ap242.step", sheet::write(&Panel::hood(), Schema::Ap242)),
         sample("hood/hood.step", sheet::write(&Panel::hood(), Schema::Ap214)),
+        sample("plate/plate.step", plate::write(Schema::Ap214)),
         sample("trunk/trunk-ap242.step", sheet::write(&Panel::trunk(), Schema::Ap242)),
         sample("trunk/trunk.step", sheet::write(&Panel::trunk(), Schema::Ap214)),
+        sample("vamp/vamp.step", thin_solid::write("vamp", &Panel::vamp(), Schema::Ap242)),
+        sample("vase/vase.step", vase::write(Schema::Ap214)),
     ]
 }

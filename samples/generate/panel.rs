@@ -72,6 +72,23 @@ impl Panel {
         }
     }
 
+    /// A shell like the vamp of a shoe, 260 mm by 110 mm, high over the instep.
+    pub fn vamp() -> Self {
+        let height = |x: f64, y: f64| {
+            let across = (2.0 * y - 1.0).powi(2);
+            (35.0 + 45.0 * (1.0 - (2.4 * (x - 0.75)).powi(2)).max(-0.6)) * (1.0 - 0.9 * across) + 12.0 * x * y
+        };
+        Self {
+            name: "vamp",
+            colour: [0.55, 0.35, 0.25],
+            surface: part([3, 3], [10, 8], |x, y| {
+                let half = 35.0 + 20.0 * (PI * x).sin();
+                [260.0 * x, half * (2.0 * y - 1.0) + 8.0 * (PI * x).sin(), height(x, y)]
+            }),
+            holes: vec![ellipse([0.12, 0.5], [0.05, 0.1], 0.0)],
+        }
+    }
+
     /// The edges of the holes, proved to lie on the surface within [`UNCERTAINTY`].
     pub fn hole_curves(&self) -> Vec<Curve> {
         let curves: Vec<Curve> = self.holes.iter().map(|hole| self.surface.hole(hole)).collect();
@@ -84,7 +101,7 @@ impl Panel {
 }
 
 /// The surface whose control points are the values of `f` at the Greville abscissae.
-fn part(degrees: [usize; 2], spans: [usize; 2], f: impl Fn(f64, f64) -> [f64; 3]) -> Surface {
+pub fn part(degrees: [usize; 2], spans: [usize; 2], f: impl Fn(f64, f64) -> [f64; 3]) -> Surface {
     let knots = [clamped(degrees[0], spans[0]), clamped(degrees[1], spans[1])];
     let (along, across) = (greville(&knots[0], degrees[0]), greville(&knots[1], degrees[1]));
     let value = |&x: &f64| across.iter().map(|&y| f(x, y).map(rounded)).collect::<Vec<_>>();

@@ -214,12 +214,21 @@ impl Records {
     }
 
     pub fn surface(&mut self, name: &str, surface: &Surface) -> Name {
+        self.any_surface(name, surface, ".F.")
+    }
+
+    /// A surface that closes along `v`.
+    pub fn closed_surface(&mut self, name: &str, surface: &Surface) -> Name {
+        self.any_surface(name, surface, ".T.")
+    }
+
+    fn any_surface(&mut self, name: &str, surface: &Surface, v_closed: &str) -> Name {
         let points: Vec<Name> = surface.net.iter().map(|p| self.point(*p)).collect();
         let rows: Vec<String> = points.chunks(surface.columns()).map(list).collect();
         let (multiplicities_u, knots_u) = distinct(&surface.knots[0]);
         let (multiplicities_v, knots_v) = distinct(&surface.knots[1]);
         self.add(format!(
-            "B_SPLINE_SURFACE_WITH_KNOTS('{name}',{},{},({}),.UNSPECIFIED.,.F.,.F.,.F.,\
+            "B_SPLINE_SURFACE_WITH_KNOTS('{name}',{},{},({}),.UNSPECIFIED.,.F.,{v_closed},.F.,\
              {multiplicities_u},{multiplicities_v},{knots_u},{knots_v},.UNSPECIFIED.)",
             surface.degrees[0],
             surface.degrees[1],

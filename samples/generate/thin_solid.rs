@@ -29,9 +29,9 @@ struct Solid<'a> {
 }
 
 /// The file of one thin solid.
-pub fn write(panel: &Panel, schema: Schema) -> String {
-    let mut records = Records::new("door-solid", schema);
-    let product = records.product("door-solid");
+pub fn write(title: &'static str, panel: &Panel, schema: Schema) -> String {
+    let mut records = Records::new(title, schema);
+    let product = records.product(title);
     let skins = [
         records.surface("outer", &panel.surface),
         records.surface("inner", &panel.surface.translated(OFFSET)),
@@ -42,7 +42,7 @@ pub fn write(panel: &Panel, schema: Schema) -> String {
     solid.hole_walls();
     let (faces, hole_walls) = solid.faces();
     let shell = records.add(format!("CLOSED_SHELL('',{})", list(&faces)));
-    let body = records.add(format!("MANIFOLD_SOLID_BREP('door-solid',{shell})"));
+    let body = records.add(format!("MANIFOLD_SOLID_BREP('{title}',{shell})"));
     let placement = records.placement([0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
     records.representation(product, "ADVANCED_BREP_SHAPE_REPRESENTATION", &[placement, body]);
     let mut styled = vec![records.styled(body, panel.colour)];

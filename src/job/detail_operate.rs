@@ -1,13 +1,10 @@
 //! From the words of `detail_transfer` to the operation: curves are selected, the source's file is read, lengths
 //! get their units.
 
-use std::path::Path;
-
 use super::detail_file::{
     CurveSelector, DetailScale, DetailTransfer, EndsWord, FrameWord, LevelsSetting, OwnDetailWord,
 };
-use super::operate::OperateError;
-use super::part::Read;
+use super::operate::{OperateError, other_file};
 use super::select_curve;
 use crate::model::Model;
 use crate::ops::detail_transfer::{Existing, Frame, LevelChoice, Params, Plan, Scale, Settings, plan};
@@ -50,15 +47,6 @@ pub(super) fn planned(model: &Model, words: &DetailTransfer) -> Result<Plan, Ope
 /// Free curves are in the units of the file's first context, the only one that nearly all files have.
 fn unit_of(model: &Model) -> Option<&LengthUnit> {
     model.contexts.first().map(|context| &context.length)
-}
-
-fn other_file(file: &str) -> Result<Model, OperateError> {
-    let fault = |reason: String| OperateError::SourceFile { file: file.to_owned(), reason };
-    let mut read = Read::file(Path::new(file)).map_err(|error| fault(error.to_string()))?;
-    read.refuse_damage().map_err(|error| fault(error.to_string()))?;
-    let model = read.model();
-    read.refuse_errors().map_err(|error| fault(error.to_string()))?;
-    Ok(model)
 }
 
 fn settings(words: &DetailTransfer) -> Settings {

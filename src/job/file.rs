@@ -8,6 +8,7 @@ use serde::Deserialize;
 use serde::de;
 
 pub use super::detail_file::DetailTransfer;
+pub use super::paste_file::FeaturePaste;
 use super::selector::Selector;
 use crate::units::Length;
 
@@ -36,26 +37,14 @@ pub struct Job {
     /// Other programs that must accept the result.
     #[serde(default)]
     pub validate: ValidateSettings,
-    /// The operation; none passes the parts through. More than one in a job is not there yet.
-    #[serde(default, deserialize_with = "at_most_one")]
-    #[schemars(length(max = 1))]
+    /// Operations, each on what the ones before it made; none passes the parts through.
+    #[serde(default)]
     pub operation: Vec<Operation>,
 }
 
 fn at_least_one<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Vec<String>, D::Error> {
     let inputs = Vec::<String>::deserialize(deserializer)?;
     if inputs.is_empty() { Err(de::Error::custom("a job needs an input")) } else { Ok(inputs) }
-}
-
-fn at_most_one<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Vec<Operation>, D::Error> {
-    let operations = Vec::deserialize(deserializer)?;
-    if operations.len() > 1 {
-        let count = operations.len();
-        return Err(de::Error::custom(format!(
-            "{count} operations in one job; one is what this version does"
-        )));
-    }
-    Ok(operations)
 }
 
 /// Version of the job format.
@@ -216,6 +205,8 @@ pub enum Operation {
     ConstrainedScale(Box<ConstrainedScale>),
     /// Carry the detail of one curve onto another.
     DetailTransfer(Box<DetailTransfer>),
+    /// Carry a freeform feature from one face onto another.
+    FeaturePaste(Box<FeaturePaste>),
 }
 
 #[derive(Deserialize)]
@@ -223,6 +214,7 @@ pub enum Operation {
 enum OperationKind {
     ConstrainedScale,
     DetailTransfer,
+    FeaturePaste,
 }
 
 impl<'de> Deserialize<'de> for Operation {
@@ -251,6 +243,11 @@ impl<'de> Deserialize<'de> for Operation {
                         let transfer = DetailTransfer::deserialize(rest)?;
                         transfer.check().map_err(de::Error::custom)?;
                         Ok(Operation::DetailTransfer(Box::new(transfer)))
+                    }
+                    OperationKind::FeaturePaste => {
+                        let paste = FeaturePaste::deserialize(rest)?;
+                        paste.check().map_err(de::Error::custom)?;
+                        Ok(Operation::FeaturePaste(Box::new(paste)))
                     }
                 }
             }

@@ -18,6 +18,8 @@ pub mod operate;
 pub mod output;
 pub mod own_check;
 pub mod part;
+pub mod paste_file;
+mod paste_operate;
 pub mod plan;
 pub mod read;
 pub mod report;

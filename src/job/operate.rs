@@ -1,6 +1,9 @@
 //! From the words of a job to an operation on a model.
 
+use std::path::Path;
+
 use super::file::{self, ConstrainedScale, Operation};
+use super::part::Read;
 use super::report::{DiagnosticReport, OperationReport};
 use super::select::{self, SelectError, point_in};
 use crate::brep::{EdgeId, FaceId, LoopId};
@@ -26,6 +29,12 @@ pub enum OperateError {
     /// The selector of the source curve does not fit its part.
     #[error("source.curve: {0}")]
     SourceCurve(SelectError),
+    /// The selector of the target does not fit the part.
+    #[error("target.face: {0}")]
+    TargetFace(SelectError),
+    /// The selector of the source does not fit its part.
+    #[error("source.face: {0}")]
+    SourceFace(SelectError),
     /// The file of the source cannot be used.
     #[error("source.file: {file}: {reason}")]
     SourceFile {
@@ -33,6 +42,12 @@ pub enum OperateError {
         file: String,
         /// Why.
         reason: String,
+    },
+    /// No curve has the name.
+    #[error("source.region.curve: #{name} is no curve that was read")]
+    NoCurve {
+        /// The name.
+        name: u64,
     },
     /// A hold does not fit the part.
     #[error("hold: {0}")]
@@ -52,9 +67,16 @@ impl OperateError {
         match self {
             Self::Face(SelectError::Several { .. })
             | Self::TargetCurve(SelectError::SeveralCurves { .. })
-            | Self::SourceCurve(SelectError::SeveralCurves { .. }) => "select.several",
-            Self::Face(_) | Self::TargetCurve(_) | Self::SourceCurve(_) => "select.no-match",
+            | Self::SourceCurve(SelectError::SeveralCurves { .. })
+            | Self::TargetFace(SelectError::Several { .. })
+            | Self::SourceFace(SelectError::Several { .. }) => "select.several",
+            Self::Face(_)
+            | Self::TargetFace(_)
+            | Self::SourceFace(_)
+            | Self::TargetCurve(_)
+            | Self::SourceCurve(_) => "select.no-match",
             Self::SourceFile { .. } => "job.source-file",
+            Self::NoCurve { .. } => "paste.no-curve",
             Self::Hold(_) => "select.no-hold",
             Self::Operation(error) => error.code(),
             Self::NoFace => "select.no-face",
@@ -82,6 +104,16 @@ pub fn operate(model: &Model, source: &Source, operation: &Operation) -> Result<
             };
             Ok((planned.change_set, report))
         }
+        Operation::FeaturePaste(words) => {
+            let planned = super::paste_operate::planned(model, words)?;
+            let report = OperationReport {
+                kind: "feature_paste".to_owned(),
+                changed: changed(&planned.change_set),
+                measures: serde_json::to_value(&planned.measures).unwrap_or_default(),
+                notes: planned.notes.iter().map(|note| DiagnosticReport::new(note, source)).collect(),
+            };
+            Ok((planned.change_set, report))
+        }
     }
 }
 
@@ -95,6 +127,16 @@ fn scale(model: &Model, source: &Source, settings: &ConstrainedScale) -> Result<
         notes: planned.notes.iter().map(|note| DiagnosticReport::new(note, source)).collect(),
     };
     Ok((planned.change_set, report))
+}
+
+/// The model of another file, whole or not at all.
+pub(super) fn other_file(file: &str) -> Result<Model, OperateError> {
+    let fault = |reason: String| OperateError::SourceFile { file: file.to_owned(), reason };
+    let mut read = Read::file(Path::new(file)).map_err(|error| fault(error.to_string()))?;
+    read.refuse_damage().map_err(|error| fault(error.to_string()))?;
+    let model = read.model();
+    read.refuse_errors().map_err(|error| fault(error.to_string()))?;
+    Ok(model)
 }
 
 fn changed(changes: &ChangeSet) -> std::collections::BTreeMap<String, usize> {

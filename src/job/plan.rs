@@ -92,6 +92,7 @@ pub fn resolve(job: &mut Job, folder: &Path) -> Result<(), PlanError> {
         let file = match operation {
             Operation::ConstrainedScale(_) => None,
             Operation::DetailTransfer(transfer) => transfer.source.file.as_mut(),
+            Operation::FeaturePaste(paste) => paste.source.file.as_mut(),
         };
         let Some(file) = file else { continue };
         let path = folder.join(&*file);

@@ -115,6 +115,19 @@ pub struct Edits {
     pub bytes_untouched: usize,
 }
 
+impl Edits {
+    /// The edits of two operations, one after the other; of bytes that neither touches the lesser count is known.
+    #[must_use]
+    pub fn followed_by(&self, next: &Self) -> Self {
+        Self {
+            replaced: self.replaced + next.replaced,
+            added: self.added + next.added,
+            removed: self.removed + next.removed,
+            bytes_untouched: self.bytes_untouched.min(next.bytes_untouched),
+        }
+    }
+}
+
 impl From<crate::exchange::EditCounts> for Edits {
     fn from(counts: crate::exchange::EditCounts) -> Self {
         let crate::exchange::EditCounts { replaced, added, removed, bytes_untouched } = counts;

@@ -1,6 +1,7 @@
 //! Runs a job over its parts: each is read, changed, written beside its place, read again, judged by
 //! others, and only then moved into place.
 
+use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::Instant;
@@ -14,7 +15,7 @@ use super::output::Staged;
 use super::own_check::{OwnFinding, new_findings, own_findings};
 use super::part::Read;
 use super::plan::Part;
-use super::report::{DiagnosticReport, PartReport, Report, Status, WritePath};
+use super::report::{DiagnosticReport, Edits, PartReport, Report, Status, WritePath};
 use crate::document::Stamp;
 use crate::model::{ChangeSet, Model};
 
@@ -78,13 +79,14 @@ fn run_part(job: &Job, part: &Part, mode: Mode, stamp: &Stamp) -> PartReport {
 
 fn go(job: &Job, part: &Part, mode: Mode, stamp: &Stamp, report: &mut PartReport) -> Result<(), PartError> {
     let mut read = Read::file(&part.input)?;
-    let result = changed_bytes(job, &mut read, stamp, report);
+    let result = changed_bytes(job, part, &mut read, stamp, report);
     report.take_diagnostics(&read.diagnostics, read.document.source());
-    let Changed { bytes: changed, findings } = result?;
+    let result = result?;
+    let changed = &result.bytes;
     // The input's bytes serve again when nothing changed: a copy would double the memory.
     let bytes = changed.as_deref().unwrap_or_else(|| read.document.source().bytes());
     let needs_model = !job.operation.is_empty() || !job.also.is_empty() || !job.validate.with.is_empty();
-    let after = if needs_model { Some(read_again(bytes, &part.output, &findings, report)?) } else { None };
+    let after = if needs_model { Some(read_again(bytes, &part.output, &result, report)?) } else { None };
     if let Some(model) = &after {
         chord(job, model)?;
     }
@@ -116,10 +118,13 @@ struct Changed {
     bytes: Option<Vec<u8>>,
     /// Facts that the input already violated.
     findings: Vec<OwnFinding>,
+    /// Count of surfaces by kind that the result must have.
+    surfaces: BTreeMap<String, usize>,
 }
 
 fn changed_bytes(
     job: &Job,
+    part: &Part,
     read: &mut Read,
     stamp: &Stamp,
     report: &mut PartReport,
@@ -136,29 +141,65 @@ fn changed_bytes(
     // A bound that does not fit is the job's fault: it is told before the work, not after.
     chord(job, &model)?;
     report.before = Some(Figures::of(&model));
-    let mut changes = ChangeSet::default();
+    let mut surfaces = Figures::of(&model).surfaces;
+    let mut bytes: Option<Vec<u8>> = None;
     for operation in &job.operation {
-        let (planned, measured) = operate(&model, read.document.source(), operation)?;
-        changes = planned;
+        // Each operation reads what the ones before it would have written.
+        let between = bytes.as_ref().map(|bytes| read_between(bytes, part)).transpose()?;
+        let (document, model) = match &between {
+            Some((read, model)) => (&read.document, model),
+            None => (&read.document, &model),
+        };
+        let (changes, measured) = operate(model, document.source(), operation)?;
         report.operations.push(measured);
+        let patch = document.lower(model, &changes, stamp)?;
+        let edits: Edits = patch.counts().into();
+        report.edits = Some(report.edits.map_or(edits, |before| before.followed_by(&edits)));
+        if !patch.is_empty() {
+            count_kinds(&mut surfaces, model, &changes);
+            bytes = Some(patch.apply(document.source().bytes()));
+        }
     }
-    let patch = read.document.lower(&model, &changes, stamp)?;
-    report.edits = Some(patch.counts().into());
-    if patch.is_empty() {
+    if bytes.is_none() {
         return Ok(Changed::default());
     }
     report.write_path = Some(WritePath::Patched);
     let stale = read.document.validation_properties();
     report.losses.extend(stale.iter().map(|entity| stale_property(entity)));
-    let bytes = Some(patch.apply(read.document.source().bytes()));
-    Ok(Changed { bytes, findings: own_findings(&read.document, &model, 1.0) })
+    Ok(Changed { bytes, findings: own_findings(&read.document, &model, 1.0), surfaces })
+}
+
+/// What an operation has made, as the next one finds it.
+fn read_between(bytes: &[u8], part: &Part) -> Result<(Read, Model), PartError> {
+    let extension = part.output.extension().and_then(|e| e.to_str()).unwrap_or_default();
+    let mut read = Read::bytes(bytes.to_vec(), extension)?;
+    let model = read.model();
+    read.refuse_errors()?;
+    Ok((read, model))
+}
+
+/// Counts of surfaces by kind, as a change set will leave them.
+fn count_kinds(surfaces: &mut BTreeMap<String, usize>, model: &Model, changes: &ChangeSet) {
+    for (&face, new) in &changes.surfaces {
+        let (old, new) = (super::measure::kind(model.brep.surface_of(face)), new.kind());
+        if old == new {
+            continue;
+        }
+        *surfaces.entry(new.to_owned()).or_insert(0) += 1;
+        if let Some(count) = surfaces.get_mut(&old) {
+            *count -= 1;
+            if *count == 0 {
+                surfaces.remove(&old);
+            }
+        }
+    }
 }
 
 /// Reads the result as anybody else would, and compares it with the input.
 fn read_again(
     bytes: &[u8],
     output: &Path,
-    known: &[OwnFinding],
+    wanted: &Changed,
     report: &mut PartReport,
 ) -> Result<Model, PartError> {
     let extension = output.extension().and_then(|e| e.to_str()).unwrap_or_default();
@@ -170,7 +211,8 @@ fn read_again(
         for (name, was, is) in before.differing_counts(&after) {
             findings.push(format!("{name}: {was} before, {is} after"));
         }
-        if before.surfaces != after.surfaces {
+        let surfaces = if wanted.bytes.is_some() { &wanted.surfaces } else { &before.surfaces };
+        if *surfaces != after.surfaces {
             findings.push("the kinds of the surfaces differ".to_owned());
         }
     }
@@ -183,7 +225,7 @@ fn read_again(
     if report.write_path == Some(WritePath::Patched) {
         let growth = report.before.as_ref().map_or(1.0, |before| before.growth(&after));
         let own = own_findings(&read.document, &model, growth);
-        findings.extend(new_findings(known, &own, growth).map(ToString::to_string));
+        findings.extend(new_findings(&wanted.findings, &own, growth).map(ToString::to_string));
         report.findings = own;
     }
     report.after = Some(after);

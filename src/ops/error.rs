@@ -2,6 +2,7 @@
 
 use super::constrained_scale::ScaleError;
 use super::detail_transfer::TransferError;
+use super::feature_paste::PasteError;
 
 /// An element that cannot take part, and why.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,6 +24,9 @@ pub enum OperationError {
     /// Detail could not be carried over.
     #[error(transparent)]
     Transfer(#[from] TransferError),
+    /// A feature could not be pasted.
+    #[error(transparent)]
+    Paste(#[from] PasteError),
     /// Elements in the scope have no image under the motion that they would need.
     #[error("{} cannot follow: {}", count(.obstacles), list(.obstacles))]
     CannotFollow {
@@ -95,6 +99,7 @@ impl OperationError {
         match self {
             Self::Scale(error) => error.code(),
             Self::Transfer(error) => error.code(),
+            Self::Paste(error) => error.code(),
             Self::CannotFollow { .. } => "scale.cannot-follow",
             Self::NeighboursOutside { .. } => "scale.neighbours-outside",
             Self::NothingToHold { .. } => "scale.nothing-to-hold",

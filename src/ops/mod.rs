@@ -6,5 +6,7 @@
 pub mod constrained_scale;
 pub mod detail_transfer;
 pub mod error;
+pub mod feature_paste;
+pub mod net;
 
 pub use error::{Obstacle, OperationError};

@@ -5,6 +5,7 @@ mod detail;
 mod jobs;
 mod locality;
 mod parts;
+mod paste;
 mod patho;
 #[path = "../support/mod.rs"]
 #[allow(dead_code, reason = "shared with other test binaries")]

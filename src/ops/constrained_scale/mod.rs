@@ -14,7 +14,6 @@
 //! Source: fix-and-stretch scaling with the corrections of
 //! `docs/decisions/constrained-scale.md`; the slide reference is our own.
 
-pub mod cells;
 pub mod energy;
 pub mod envelope;
 pub mod error;
@@ -24,16 +23,15 @@ mod grouping;
 pub mod measures;
 pub mod motion;
 pub mod plan;
-pub mod polygon;
 mod prepare;
 pub mod refine;
-pub mod sampling;
 pub mod scaling;
 pub mod slide;
 pub mod solve;
 mod stage;
 pub mod task;
 
+pub use super::net::{cells, polygon, sampling};
 pub use error::ScaleError;
 pub use faces::{scale_face, scale_faces};
 pub use motion::Motion;

@@ -3,18 +3,10 @@
 use super::cells::Mask;
 use super::fold::Compression;
 use super::motion::Motion;
+pub use super::polygon::Contour;
 use super::scaling::Hold;
 use crate::geometry::nurbs::NurbsSurface;
 use crate::math::Point3;
-
-/// A closed polygon in the parameters of a face.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Contour {
-    /// Points in order; the closing side is implied.
-    pub points: Vec<[f64; 2]>,
-    /// By how much the true curve may miss the polygon, in `u` and in `v`.
-    pub margin: [f64; 2],
-}
 
 /// A loop whose inside keeps its shape.
 #[derive(Debug, Clone, PartialEq)]

@@ -8,13 +8,13 @@
 
 mod assemble;
 mod hold;
-mod layout;
 mod report;
 mod rigid;
 mod scope;
 mod stretch;
 
-pub use layout::inner_loops;
+use crate::ops::net::layout;
+pub use crate::ops::net::layout::inner_loops;
 pub use report::{FaceMeasures, GroupMeasures, LoopMeasures, Measures};
 pub use scope::Scope;
 

@@ -6,6 +6,7 @@ use crate::brep::{FaceId, ShellId};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::model::Model;
 use crate::ops::OperationError;
+pub(super) use crate::ops::net::layout::face_name;
 
 /// Faces to scale.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -24,11 +25,6 @@ impl Scope {
             Self::Faces(faces) => faces.iter().copied().collect(),
         }
     }
-}
-
-/// Name of a face in messages: its origin, and its name when the file gives one.
-pub(super) fn face_name(model: &Model, face: FaceId) -> String {
-    model.origins.faces[face].to_string()
 }
 
 /// Refuses a scope of which a face shares an edge with a face outside it.

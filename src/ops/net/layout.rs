@@ -3,19 +3,24 @@
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
-use super::scope::face_name;
+use super::polygon::Contour;
+use super::sampling::mean_lengths;
 use crate::brep::parameter_loop::{LoopSampling, parameter_loops};
 use crate::brep::{FaceId, LoopId};
 use crate::geometry::Surface;
 use crate::geometry::nurbs::NurbsSurface;
 use crate::model::Model;
 use crate::ops::OperationError;
-use crate::ops::constrained_scale::sampling::mean_lengths;
-use crate::ops::constrained_scale::task::Contour;
+
+/// Name of a face in messages: its origin.
+#[must_use]
+pub fn face_name(model: &Model, face: FaceId) -> String {
+    model.origins.faces[face].to_string()
+}
 
 /// A loop of the face in its parameters.
 #[derive(Debug, Clone)]
-pub(super) struct LoopShape {
+pub struct LoopShape {
     /// Its polygon.
     pub contour: Contour,
     /// Whether it closes in the parameter plane; a loop round a closed surface does not.
@@ -24,7 +29,7 @@ pub(super) struct LoopShape {
 
 /// The loops of one face.
 #[derive(Debug, Clone)]
-pub(super) struct Layout {
+pub struct Layout {
     /// In the face's order; none for a loop that is a single vertex.
     pub loops: Vec<Option<LoopShape>>,
     /// The outer loop: the one that encloses most. None where loops wind round a closed surface.
@@ -33,6 +38,7 @@ pub(super) struct Layout {
 
 impl Layout {
     /// Whether a loop bounds a hole: not the outer one, and closed in the parameter plane.
+    #[must_use]
     pub fn is_inner(&self, at: usize) -> bool {
         let closed = self.loops.get(at).and_then(Option::as_ref).is_some_and(|l| l.closed);
         closed && self.outer != Some(at)
@@ -40,7 +46,8 @@ impl Layout {
 }
 
 /// The B-spline surface of a face, if it has one.
-pub(super) fn spline_of(model: &Model, face: FaceId) -> Option<&NurbsSurface> {
+#[must_use]
+pub fn spline_of(model: &Model, face: FaceId) -> Option<&NurbsSurface> {
     match model.brep.surface_of(face).read() {
         Some(Surface::Nurbs(surface)) => Some(surface),
         _ => None,
@@ -60,12 +67,15 @@ pub fn inner_loops(model: &Model, face: FaceId) -> Vec<LoopId> {
 
 /// Layouts that were asked for, each computed once.
 #[derive(Debug, Default)]
-pub(super) struct Layouts {
+pub struct Layouts {
     known: BTreeMap<FaceId, Layout>,
 }
 
 impl Layouts {
     /// The layout of a B-spline face.
+    ///
+    /// # Errors
+    /// [`OperationError::NoParameterLoops`].
     pub fn of(&mut self, model: &Model, face: FaceId) -> Result<&Layout, OperationError> {
         Ok(match self.known.entry(face) {
             Entry::Occupied(known) => known.into_mut(),
@@ -83,9 +93,22 @@ const UNCERTAINTY: f64 = 1e-6;
 /// Samples in each direction to turn a distance into a distance of parameters.
 const LENGTH_SAMPLES: usize = 9;
 
-fn lay_out(model: &Model, face: FaceId) -> Result<Layout, OperationError> {
+/// The loops of a B-spline face in its parameters.
+///
+/// # Errors
+/// [`OperationError::NoParameterLoops`].
+pub fn lay_out(model: &Model, face: FaceId) -> Result<Layout, OperationError> {
+    let reason = || "it is no B-spline surface".to_owned();
+    let fault = || OperationError::NoParameterLoops { face: face_name(model, face), reason: reason() };
+    lay_out_on(model, face, spline_of(model, face).ok_or_else(fault)?)
+}
+
+/// The loops of a face in the parameters of a B-spline surface that has the same parameters as the face's own.
+///
+/// # Errors
+/// [`OperationError::NoParameterLoops`].
+pub fn lay_out_on(model: &Model, face: FaceId, surface: &NurbsSurface) -> Result<Layout, OperationError> {
     let fault = |reason: String| OperationError::NoParameterLoops { face: face_name(model, face), reason };
-    let surface = spline_of(model, face).ok_or_else(|| fault("it is no B-spline surface".to_owned()))?;
     let (du, dv) = surface.domain();
     let range = [du.1 - du.0, dv.1 - dv.0];
     let spans = [surface.knots_u(), surface.knots_v()].map(|k| k.distinct().0.len() - 1);

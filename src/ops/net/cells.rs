@@ -62,6 +62,44 @@ impl Mask {
         Self { bits: self.bits.iter().map(|b| !b).collect(), ..*self }
     }
 
+    /// The places of either of two sets of the same shape.
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        let mut out = self.clone();
+        out.unite(other);
+        out
+    }
+
+    /// The places that are not in another set of the same shape.
+    #[must_use]
+    pub fn without(&self, other: &Self) -> Self {
+        let bits = self.bits.iter().zip(&other.bits).map(|(&a, &b)| a && !b).collect();
+        Self { bits, ..*self }
+    }
+
+    /// The places that are not among the first and last `rows` rows and columns.
+    #[must_use]
+    pub fn off_border(&self, rows: usize) -> Self {
+        let mut out = Self::empty(self.rows, self.columns);
+        for at in self.indices() {
+            let (i, j) = (at / self.columns, at % self.columns);
+            out.bits[at] = i >= rows && i + rows < self.rows && j >= rows && j + rows < self.columns;
+        }
+        out
+    }
+
+    /// First and last row, first and last column of the places; `None` for the empty set.
+    #[must_use]
+    pub fn extent(&self) -> Option<[(usize, usize); 2]> {
+        let mut extent: Option<[(usize, usize); 2]> = None;
+        for at in self.indices() {
+            let (i, j) = (at / self.columns, at % self.columns);
+            let [(i0, i1), (j0, j1)] = extent.unwrap_or([(i, i), (j, j)]);
+            extent = Some([(i0.min(i), i1.max(i)), (j0.min(j), j1.max(j))]);
+        }
+        extent
+    }
+
     /// Whether two sets of the same shape share a place.
     #[must_use]
     pub fn meets(&self, other: &Self) -> bool {
@@ -181,9 +219,15 @@ impl CellGrid {
     /// no cell is missed however long a side is.
     #[must_use]
     pub fn met_by(&self, polygon: &Polygon) -> Mask {
+        self.met_by_sides(polygon.sides(), polygon.margin())
+    }
+
+    /// As [`met_by`](Self::met_by), for any set of straight pieces.
+    #[must_use]
+    pub fn met_by_sides(&self, sides: impl Iterator<Item = ([f64; 2], [f64; 2])>, margin: [f64; 2]) -> Mask {
         let mut cells = Mask::empty(self.u.n_cells(), self.v.n_cells());
         let mut cuts = Vec::new();
-        for (a, b) in polygon.sides() {
+        for (a, b) in sides {
             cuts.clear();
             cuts.extend([0.0, 1.0]);
             self.u.cuts(a[0], b[0], &mut cuts);
@@ -193,7 +237,7 @@ impl CellGrid {
             let middles = cuts.windows(2).map(|w| 0.5 * (w[0] + w[1]));
             for t in cuts.iter().copied().chain(middles) {
                 let at = [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
-                self.mark(at, polygon.margin(), &mut cells);
+                self.mark(at, margin, &mut cells);
             }
         }
         cells

@@ -3,6 +3,15 @@
 /// Points nearer to each other than this part of the domain's range are one: below it, sides carry no direction.
 const SAME_POINT: f64 = 1e-10;
 
+/// A closed polygon in the parameters of a face.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Contour {
+    /// Points in order; the closing side is implied.
+    pub points: Vec<[f64; 2]>,
+    /// By how much the true curve may miss the polygon, in `u` and in `v`.
+    pub margin: [f64; 2],
+}
+
 /// A closed polygon with the parameter distances by which the true curve may miss it.
 ///
 /// INVARIANT: at least three points, consecutive ones distinct; the last is not the first repeated.

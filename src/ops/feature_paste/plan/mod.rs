@@ -1,0 +1,277 @@
+//! From models and parameters to a change set: the target face gets its new surface, and nothing else changes.
+//!
+//! The source may be a face of another file, in other units. Loops of the target are kept clear of the feature, or
+//! the paste is refused. Pure: no I/O. All or nothing.
+
+mod measure;
+mod source;
+mod target;
+
+pub use measure::{Measures, PlaceMeasures};
+
+use super::settings::{Mirror, Pasted, Settings};
+use super::{Feature, Ground, PasteError, contour::Plane, paste};
+use crate::brep::FaceId;
+use crate::diagnostic::{Diagnostic, Severity};
+use crate::geometry::Surface;
+use crate::geometry::nurbs::NurbsSurface;
+use crate::math::{Affine, Matrix3, Point3, Vector3};
+use crate::model::{ChangeSet, Model};
+use crate::ops::OperationError;
+use crate::ops::net::Mask;
+
+/// What holds the feature on the source face. Lengths are in the source's units.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Region {
+    /// The face's outer loop.
+    Outer,
+    /// The inner loop of this number, counted from 0 in the face's order.
+    Inner(usize),
+    /// A closed polygon in the parameters of the surface.
+    Parameters(Vec<[f64; 2]>),
+    /// A closed polyline, and the plane along whose normal it goes onto the surface; without one, the polyline's own.
+    Contour(Vec<Point3<f64>>, Option<Plane>),
+}
+
+/// The feature's face.
+#[derive(Debug, Clone)]
+pub struct Source<'a> {
+    /// Model that the face is in.
+    pub model: &'a Model,
+    /// The face.
+    pub face: FaceId,
+    /// What holds the feature.
+    pub region: Region,
+    /// Point near the face that goes to the place; `None` for the middle of the region.
+    pub anchor: Option<Point3<f64>>,
+}
+
+/// One place on the target, in the target's units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// A point on, or near, the target face.
+    pub at: Point3<f64>,
+    /// Direction of the feature's `u` in space, before the angle; `None` for the target's own `u`.
+    pub along: Option<Vector3<f64>>,
+    /// Angle of the feature there, in radians.
+    pub angle: f64,
+    /// Mirror of the feature there.
+    pub mirror: Mirror,
+    /// Factors along `u`, `v` and the normal.
+    pub scale: [f64; 3],
+}
+
+/// What becomes of loops of the target that the feature meets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum TargetLoops {
+    /// The paste is refused.
+    #[default]
+    Refuse,
+    /// Control points that act on the loops stay: the feature is cut off there.
+    Protect,
+}
+
+/// Parameters of the operation.
+#[derive(Debug, Clone)]
+pub struct Params<'a> {
+    /// Where the feature comes from.
+    pub source: Source<'a>,
+    /// The face that takes it.
+    pub target: FaceId,
+    /// Where it goes; each place has its own angle, mirror and scale, those of `settings` are not read.
+    pub places: Vec<Place>,
+    /// Method and the like; a tolerance of `None` is chosen by the feature's size.
+    pub settings: Settings,
+    /// Greatest deviation of a fit, in the target's units.
+    pub tolerance: Option<f64>,
+    /// Loops of the target in the way.
+    pub loops: TargetLoops,
+}
+
+/// What is to be done, and what is known about it beforehand.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// New geometry.
+    pub change_set: ChangeSet,
+    /// Figures for the report.
+    pub measures: Measures,
+    /// Facts worth telling.
+    pub notes: Vec<Diagnostic>,
+}
+
+/// Tolerance of a fit that nobody set, as a part of the feature's size.
+const TOLERANCE: f64 = 2e-5;
+
+/// Detail that is left out without a word, as a part of the feature's size.
+const LOST: f64 = 1e-6;
+
+/// Plans a paste, place after place on one surface.
+///
+/// # Errors
+/// See [`PasteError`]; nothing is changed in part.
+pub fn plan(model: &Model, params: &Params<'_>) -> Result<Plan, OperationError> {
+    let target = target::Target::of(model, params.target)?;
+    let sense = target::natural_sense(model, params.target);
+    let source = source::Prepared::of(&params.source, model.context_of(params.target), sense)?;
+    let mut notes = source.notes.clone();
+    let mut surface = target.surface.clone();
+    let mut places: Vec<PlaceMeasures> = Vec::new();
+    let mut regions: Vec<[(f64, f64); 2]> = Vec::new();
+    let before = surface.net().len();
+    for place in &params.places {
+        let at = target.locate(&surface, place)?;
+        let greatest = place.scale.iter().fold(0.0, |a: f64, s| a.max(s.abs()));
+        let settings = Settings {
+            scale: place.scale,
+            mirror: place.mirror,
+            angle: snapped(place.angle + turn_to(&surface, at, place.along)?),
+            tolerance: params.tolerance.unwrap_or(TOLERANCE * source.size * greatest),
+            ..params.settings.clone()
+        };
+        let feature = Feature { source: &source.surface, contour: &source.contour, anchor: source.anchor };
+        let mut pasted = paste(&feature, &Ground { target: &surface, at }, &settings)?;
+        let region = region_of(&pasted);
+        if let Some(first) = regions.iter().position(|other| overlap(other, &region)) {
+            return Err(PasteError::PlacesOverlap { first, second: regions.len() }.into());
+        }
+        regions.push(region);
+        let cut = keep_loops(&target, &mut pasted, params.loops)?;
+        if cut > 0 {
+            notes.push(note(
+                "paste.cut-at-loops",
+                Severity::Warning,
+                format!("{cut} control points stay, because they act on loops of the target: the feature is cut off there"),
+            ));
+        }
+        places.push(measure::measure(place, &pasted, cut));
+        surface = pasted.surface;
+    }
+    let lost = places.iter().map(|place| place.lost_detail).fold(0.0, f64::max);
+    if lost > LOST * source.size {
+        let message = format!(
+            "the feature is cut off where it is up to {lost:.3e} high: control points there are too near to a border"
+        );
+        notes.push(note("paste.region-reduced", Severity::Warning, message));
+    }
+    let measures = Measures {
+        face: model.origins.faces[params.target].to_string(),
+        control_points: [before, surface.net().len()],
+        places,
+    };
+    let mut change_set = ChangeSet::default();
+    change_set.surfaces.insert(params.target, Surface::Nurbs(surface));
+    Ok(Plan { change_set, measures, notes })
+}
+
+fn note(code: &'static str, severity: Severity, message: String) -> Diagnostic {
+    Diagnostic { code, severity, entity: None, span: None, message }
+}
+
+/// Turns, in radians, that are rounding: the feature's own lines are then those of the target.
+const NO_TURN: f64 = 1e-9;
+
+fn snapped(angle: f64) -> f64 {
+    let turn = angle - std::f64::consts::TAU * (angle / std::f64::consts::TAU).round();
+    if turn.abs() <= NO_TURN { 0.0 } else { angle }
+}
+
+/// Angle from the surface's `u` to a direction in space, about the surface's normal.
+fn turn_to(surface: &NurbsSurface, at: [f64; 2], along: Option<Vector3<f64>>) -> Result<f64, PasteError> {
+    let Some(along) = along else { return Ok(0.0) };
+    let frame: Matrix3<f64> = super::frames::frame_at(surface, at, "target")?;
+    let (x, y) = (frame.column(0).dot(&along), frame.column(1).dot(&along));
+    if x == 0.0 && y == 0.0 {
+        let found = format!("({}, {}, {})", along.x, along.y, along.z);
+        return Err(PasteError::BadSetting { what: "along", expected: "a direction in the surface", found });
+    }
+    Ok(y.atan2(x))
+}
+
+/// Parameters that the changed control points act on.
+fn region_of(pasted: &Pasted) -> [(f64, f64); 2] {
+    let knots = [pasted.surface.knots_u(), pasted.surface.knots_v()];
+    let extent = pasted.changed.extent().unwrap_or([(0, 0); 2]);
+    [0, 1].map(|k| {
+        let all = knots[k].knots();
+        (all[extent[k].0], all[extent[k].1 + knots[k].degree() + 1])
+    })
+}
+
+fn overlap(a: &[(f64, f64); 2], b: &[(f64, f64); 2]) -> bool {
+    (0..2).all(|k| a[k].0 < b[k].1 && b[k].0 < a[k].1)
+}
+
+/// Takes back what would move a loop of the target, or refuses; gives the count of control points that stay.
+fn keep_loops(
+    target: &target::Target,
+    pasted: &mut Pasted,
+    loops: TargetLoops,
+) -> Result<usize, OperationError> {
+    let mut stay = Mask::empty(pasted.changed.shape().0, pasted.changed.shape().1);
+    for (name, acting) in target.acting_on_loops(&pasted.refined) {
+        if acting.meets(&pasted.changed) {
+            if loops == TargetLoops::Refuse {
+                return Err(PasteError::TargetLoopInRegion { held: name }.into());
+            }
+            stay.unite(&acting);
+        }
+    }
+    let kept = pasted.changed.without(&stay);
+    let cut = pasted.changed.count() - kept.count();
+    if cut > 0 {
+        let refined = pasted.refined.net();
+        let mut net = pasted.surface.net().to_vec();
+        for at in pasted.changed.indices().filter(|&at| !kept.contains_index(at)) {
+            net[at] = refined[at];
+        }
+        pasted.surface = super::base::with_net(&pasted.refined, net)?;
+        pasted.changed = kept;
+    }
+    Ok(cut)
+}
+
+/// The places of a row: `count` of them, each `step` from the one before.
+#[must_use]
+pub fn linear_pattern(first: &Place, step: &Vector3<f64>, count: usize) -> Vec<Place> {
+    (0..count).map(|k| Place { at: first.at + step * k as f64, ..*first }).collect()
+}
+
+/// The places of a ring about an axis: `count` of them over `angle`, the feature turning with them.
+///
+/// Over a full turn the last place stands one step before the first; else it stands at the end of the angle.
+#[must_use]
+pub fn circular_pattern(
+    first: &Place,
+    axis: (&Point3<f64>, &Vector3<f64>),
+    angle: f64,
+    count: usize,
+    along: &Vector3<f64>,
+) -> Vec<Place> {
+    let Some(direction) = axis.1.try_normalize(0.0) else { return vec![*first] };
+    let full = (angle.abs() - std::f64::consts::TAU).abs() < 1e-9;
+    let steps = if full { count } else { count.saturating_sub(1).max(1) };
+    let place = |k: usize| {
+        let turn = rotation(&direction, angle * k as f64 / steps as f64);
+        let map = Affine::about(axis.0, turn);
+        Place { at: map.point(&first.at), along: Some(turn * along), ..*first }
+    };
+    (0..count).map(place).collect()
+}
+
+/// Rotation about a unit vector (Rodrigues).
+fn rotation(axis: &Vector3<f64>, angle: f64) -> Matrix3<f64> {
+    let (sine, cosine) = angle.sin_cos();
+    let k = axis.cross_matrix();
+    Matrix3::identity() + k * sine + k * k * (1.0 - cosine)
+}
+
+/// Direction of the target's `u` at a point of a face: where a pattern begins to turn.
+///
+/// # Errors
+/// [`PasteError::SurfaceKind`], [`PasteError::PlaceOffFace`], [`PasteError::SingularParametrisation`].
+pub fn direction_at(model: &Model, face: FaceId, place: &Place) -> Result<Vector3<f64>, OperationError> {
+    let target = target::Target::of(model, face)?;
+    let at = target.locate(&target.surface, place)?;
+    let frame = super::frames::frame_at(&target.surface, at, "target")?;
+    Ok(frame.column(0).into_owned())
+}

@@ -1,0 +1,13 @@
+//! What operations on nets share: knot cells and the control points that act on them, polygons in parameters, exact
+//! energies, sampling, and the loops of a face in its parameters.
+//!
+//! Knows no operation.
+
+pub mod cells;
+pub mod grams;
+pub mod layout;
+pub mod polygon;
+pub mod sampling;
+
+pub use cells::{CellGrid, Mask};
+pub use polygon::{Contour, Domain, Polygon, PolygonFault};
