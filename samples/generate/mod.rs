@@ -1,5 +1,6 @@
-//! Sample parts from formulas: sheets with features, and a plate, a vase and a shell to take them; car panels with elliptic holes, one of them once more as a thin solid,
-//! and an assembly of two.
+//! Sample parts from formulas: car panels with elliptic holes, one of them once more as a thin solid, an
+//! assembly of two; sheets with features, and a plate, a vase and a shell to take them; wires with and without
+//! detail.
 //!
 //! Nothing here uses the library: a sample that the library helped to write could not tell on it. Every
 //! coordinate is rounded to [`records::DECIMALS`] decimals, so that the last bit of somebody's sine does
@@ -14,9 +15,11 @@ mod sheet;
 mod spline;
 mod thin_solid;
 mod vase;
+mod wires;
 
 use panel::Panel;
 use records::Schema;
+use wires::Target;
 
 /// One file of the samples.
 pub struct Sample {
@@ -31,6 +34,10 @@ pub fn all() -> Vec<Sample> {
     let sample = |path, text| Sample { path, text };
     vec![
         sample("assembly/assembly.step", assembly::write(&Panel::door(), Schema::Ap214)),
+        sample("curves/arch.step", wires::one_target(Target::Arch, "arch")),
+        sample("curves/bow.step", wires::one_target(Target::Bow, "bow")),
+        sample("curves/hook.step", wires::one_target(Target::Hook, "hook")),
+        sample("curves/sources.step", wires::sources()),
         sample("door/door-ap242.step", sheet::write(&Panel::door(), Schema::Ap242)),
         sample("door/door.step", sheet::write(&Panel::door(), Schema::Ap214)),
         sample("door-solid/door-solid.step", thin_solid::write("door-solid", &Panel::door(), Schema::Ap242)),

@@ -4,6 +4,7 @@
 //! in file units.
 
 pub mod bounded;
+pub mod bspline_wavelet;
 pub mod curve;
 pub mod curve2d;
 mod evaluate_curve;

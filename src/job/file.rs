@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use serde::de;
 
+pub use super::detail_file::DetailTransfer;
 pub use super::paste_file::FeaturePaste;
 use super::selector::Selector;
 use crate::units::Length;
@@ -202,6 +203,8 @@ pub enum ValidatorName {
 pub enum Operation {
     /// Scale a part, while chosen features keep their shape and size.
     ConstrainedScale(Box<ConstrainedScale>),
+    /// Carry the detail of one curve onto another.
+    DetailTransfer(Box<DetailTransfer>),
     /// Carry a freeform feature from one face onto another.
     FeaturePaste(Box<FeaturePaste>),
 }
@@ -212,7 +215,7 @@ impl Operation {
     pub fn growth(&self) -> f64 {
         match self {
             Self::ConstrainedScale(scale) => scale.factors.0.into_iter().fold(1.0, f64::max),
-            Self::FeaturePaste(_) => 1.0,
+            Self::FeaturePaste(_) | Self::DetailTransfer(_) => 1.0,
         }
     }
 }
@@ -221,6 +224,7 @@ impl Operation {
 #[serde(rename_all = "snake_case")]
 enum OperationKind {
     ConstrainedScale,
+    DetailTransfer,
     FeaturePaste,
 }
 
@@ -245,6 +249,11 @@ impl<'de> Deserialize<'de> for Operation {
                         let scale = ConstrainedScale::deserialize(rest)?;
                         scale.check().map_err(de::Error::custom)?;
                         Ok(Operation::ConstrainedScale(Box::new(scale)))
+                    }
+                    OperationKind::DetailTransfer => {
+                        let transfer = DetailTransfer::deserialize(rest)?;
+                        transfer.check().map_err(de::Error::custom)?;
+                        Ok(Operation::DetailTransfer(Box::new(transfer)))
                     }
                     OperationKind::FeaturePaste => {
                         let paste = FeaturePaste::deserialize(rest)?;

@@ -5,6 +5,8 @@
 
 mod clock;
 pub mod contents;
+pub mod detail_file;
+mod detail_operate;
 pub mod failure;
 pub mod file;
 mod json;
@@ -24,6 +26,7 @@ pub mod report;
 pub mod run;
 pub mod schema;
 pub mod select;
+mod select_curve;
 pub mod selector;
 
 pub use file::Job;

@@ -1,6 +1,9 @@
 //! From the words of a job to an operation on a model.
 
+use std::path::Path;
+
 use super::file::{self, ConstrainedScale, Operation};
+use super::part::Read;
 use super::report::{DiagnosticReport, OperationReport};
 use super::select::{self, SelectError, point_in};
 use crate::brep::{EdgeId, FaceId, LoopId};
@@ -20,6 +23,12 @@ pub enum OperateError {
     /// The selector does not fit the part.
     #[error("face: {0}")]
     Face(SelectError),
+    /// The selector of the target curve does not fit the part.
+    #[error("target.curve: {0}")]
+    TargetCurve(SelectError),
+    /// The selector of the source curve does not fit its part.
+    #[error("source.curve: {0}")]
+    SourceCurve(SelectError),
     /// The selector of the target does not fit the part.
     #[error("target.face: {0}")]
     TargetFace(SelectError),
@@ -57,10 +66,16 @@ impl OperateError {
     pub fn code(&self) -> &'static str {
         match self {
             Self::Face(SelectError::Several { .. })
+            | Self::TargetCurve(SelectError::SeveralCurves { .. })
+            | Self::SourceCurve(SelectError::SeveralCurves { .. })
             | Self::TargetFace(SelectError::Several { .. })
             | Self::SourceFace(SelectError::Several { .. }) => "select.several",
-            Self::Face(_) | Self::TargetFace(_) | Self::SourceFace(_) => "select.no-match",
-            Self::SourceFile { .. } => "paste.source-file",
+            Self::Face(_)
+            | Self::TargetFace(_)
+            | Self::SourceFace(_)
+            | Self::TargetCurve(_)
+            | Self::SourceCurve(_) => "select.no-match",
+            Self::SourceFile { .. } => "job.source-file",
             Self::NoCurve { .. } => "paste.no-curve",
             Self::Hold(_) => "select.no-hold",
             Self::Operation(error) => error.code(),
@@ -79,6 +94,16 @@ pub type Operated = (ChangeSet, OperationReport);
 pub fn operate(model: &Model, source: &Source, operation: &Operation) -> Result<Operated, OperateError> {
     match operation {
         Operation::ConstrainedScale(settings) => scale(model, source, settings),
+        Operation::DetailTransfer(words) => {
+            let planned = super::detail_operate::planned(model, words)?;
+            let report = OperationReport {
+                kind: "detail_transfer".to_owned(),
+                changed: changed(&planned.change_set),
+                measures: serde_json::to_value(&planned.measures).unwrap_or_default(),
+                notes: planned.notes.iter().map(|note| DiagnosticReport::new(note, source)).collect(),
+            };
+            Ok((planned.change_set, report))
+        }
         Operation::FeaturePaste(words) => {
             let planned = super::paste_operate::planned(model, words)?;
             let report = OperationReport {
@@ -102,6 +127,16 @@ fn scale(model: &Model, source: &Source, settings: &ConstrainedScale) -> Result<
         notes: planned.notes.iter().map(|note| DiagnosticReport::new(note, source)).collect(),
     };
     Ok((planned.change_set, report))
+}
+
+/// The model of another file, whole or not at all.
+pub(super) fn other_file(file: &str) -> Result<Model, OperateError> {
+    let fault = |reason: String| OperateError::SourceFile { file: file.to_owned(), reason };
+    let mut read = Read::file(Path::new(file)).map_err(|error| fault(error.to_string()))?;
+    read.refuse_damage().map_err(|error| fault(error.to_string()))?;
+    let model = read.model();
+    read.refuse_errors().map_err(|error| fault(error.to_string()))?;
+    Ok(model)
 }
 
 fn changed(changes: &ChangeSet) -> std::collections::BTreeMap<String, usize> {

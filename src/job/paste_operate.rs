@@ -1,11 +1,8 @@
 //! From the words of `feature_paste` to the operation: faces are selected, the source's file is read, lengths get
 //! their units, patterns become places.
 
-use std::path::Path;
-
 use super::file::FeaturePaste;
-use super::operate::OperateError;
-use super::part::Read;
+use super::operate::{OperateError, other_file};
 use super::paste_file::{
     EdgeWeightsWord, ExistingWord, LoopsWord, MirrorWord, PasteMethod, Pattern, PlaneSetting, RegionSetting,
     RuleWord, TurnWord,
@@ -43,15 +40,6 @@ pub(super) fn planned(model: &Model, words: &FeaturePaste) -> Result<Plan, Opera
     };
     let tolerance = words.tolerance.map(|length| length.0.in_unit(unit));
     Ok(plan(model, &Params { source, target, places, settings, tolerance, loops })?)
-}
-
-fn other_file(file: &str) -> Result<Model, OperateError> {
-    let fault = |reason: String| OperateError::SourceFile { file: file.to_owned(), reason };
-    let mut read = Read::file(Path::new(file)).map_err(|error| fault(error.to_string()))?;
-    read.refuse_damage().map_err(|error| fault(error.to_string()))?;
-    let model = read.model();
-    read.refuse_errors().map_err(|error| fault(error.to_string()))?;
-    Ok(model)
 }
 
 fn settings(words: &FeaturePaste) -> Settings {

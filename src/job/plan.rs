@@ -89,8 +89,12 @@ fn near(nearest: &Option<String>) -> String {
 /// [`PlanError::NoMatch`].
 pub fn resolve(job: &mut Job, folder: &Path) -> Result<(), PlanError> {
     for operation in &mut job.operation {
-        let Operation::FeaturePaste(paste) = operation else { continue };
-        let Some(file) = &mut paste.source.file else { continue };
+        let file = match operation {
+            Operation::ConstrainedScale(_) => None,
+            Operation::DetailTransfer(transfer) => transfer.source.file.as_mut(),
+            Operation::FeaturePaste(paste) => paste.source.file.as_mut(),
+        };
+        let Some(file) = file else { continue };
         let path = folder.join(&*file);
         if !path.is_file() {
             let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();

@@ -33,6 +33,22 @@ pub enum SelectError {
         /// What matches.
         found: Vec<String>,
     },
+    /// No curve matches.
+    #[error("{what} matches no curve{}", candidates(.nearest))]
+    NoCurve {
+        /// The selector in words.
+        what: String,
+        /// What comes nearest.
+        nearest: Vec<String>,
+    },
+    /// One curve is needed.
+    #[error("{what} matches {} free curves, and one is needed{}", .found.len(), candidates(.found))]
+    SeveralCurves {
+        /// The selector in words.
+        what: String,
+        /// What matches.
+        found: Vec<String>,
+    },
 }
 
 /// Candidates that a message names.

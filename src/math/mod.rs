@@ -4,6 +4,7 @@
 
 pub mod affine;
 pub mod banded;
+pub mod banded_cholesky;
 pub mod bounds;
 pub mod frame;
 pub mod quadrature;

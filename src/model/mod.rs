@@ -38,6 +38,8 @@ pub struct Model {
     pub bodies: Arena<BodyId, BodyAttributes>,
     /// Curves that belong to no edge: wires and geometric sets.
     pub free_curves: Vec<CurveId>,
+    /// Their names, in the same order: each its own, or else that of the set that holds it; empty without one.
+    pub free_curve_names: Vec<String>,
     /// Product definitions in file order.
     pub products: Vec<Product>,
     /// Uses of one product in another, in file order.

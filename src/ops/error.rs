@@ -1,6 +1,7 @@
 //! Why an operation cannot be done on a part.
 
 use super::constrained_scale::ScaleError;
+use super::detail_transfer::TransferError;
 use super::feature_paste::PasteError;
 
 /// An element that cannot take part, and why.
@@ -20,6 +21,9 @@ pub enum OperationError {
     /// A face could not be scaled.
     #[error(transparent)]
     Scale(#[from] ScaleError),
+    /// Detail could not be carried over.
+    #[error(transparent)]
+    Transfer(#[from] TransferError),
     /// A feature could not be pasted.
     #[error(transparent)]
     Paste(#[from] PasteError),
@@ -94,6 +98,7 @@ impl OperationError {
     pub fn code(&self) -> &'static str {
         match self {
             Self::Scale(error) => error.code(),
+            Self::Transfer(error) => error.code(),
             Self::Paste(error) => error.code(),
             Self::CannotFollow { .. } => "scale.cannot-follow",
             Self::NeighboursOutside { .. } => "scale.neighbours-outside",

@@ -76,6 +76,7 @@ mod tests {
             faces: Default::default(),
             bodies: Default::default(),
             free_curves: Vec::new(),
+            free_curve_names: Vec::new(),
             products: Vec::new(),
             occurrences: Vec::new(),
             annotations: Vec::new(),

@@ -194,6 +194,7 @@ pub fn model(brep: Brep) -> Model {
         faces: brep.faces.iter().map(|_| Default::default()).collect(),
         bodies: brep.bodies.iter().map(|_| Default::default()).collect(),
         free_curves: Vec::new(),
+        free_curve_names: Vec::new(),
         products: Vec::new(),
         occurrences: Vec::new(),
         annotations: Vec::new(),

@@ -12,9 +12,27 @@ use crate::math::{CsMat, TriMat, quadrature::gauss_legendre};
 /// For an order above 2.
 #[must_use]
 pub fn gram(knots: &KnotVector, a: usize, b: usize) -> CsMat<f64> {
+    let (p, n) = (knots.degree(), knots.n_basis());
+    let width = 2 * p + 1;
+    let band = gram_band(knots, a, b);
+    let mut triplets = TriMat::with_capacity((n, n), n * width);
+    for i in 0..n {
+        for k in i.saturating_sub(p)..(i + p + 1).min(n) {
+            triplets.add_triplet(i, k, band[i * width + k + p - i]);
+        }
+    }
+    triplets.to_csr()
+}
+
+/// The same matrix in band storage: row `i` holds the columns `i - p ..= i + p`, so that `G[i][k]` stands at
+/// `i (2 p + 1) + k + p - i`; what lies beside the matrix is zero.
+///
+/// # Panics
+/// For an order above 2.
+#[must_use]
+pub fn gram_band(knots: &KnotVector, a: usize, b: usize) -> Vec<f64> {
     assert!(a <= 2 && b <= 2, "derivatives above the second are not offered");
     let (p, n) = (knots.degree(), knots.n_basis());
-    // Band storage: row i holds columns i - p ..= i + p.
     let width = 2 * p + 1;
     let mut band = vec![0.0; n * width];
     let (nodes, weights) = gauss_legendre(p + 1);
@@ -31,11 +49,5 @@ pub fn gram(knots: &KnotVector, a: usize, b: usize) -> CsMat<f64> {
             }
         }
     }
-    let mut triplets = TriMat::with_capacity((n, n), n * width);
-    for i in 0..n {
-        for k in i.saturating_sub(p)..(i + p + 1).min(n) {
-            triplets.add_triplet(i, k, band[i * width + k + p - i]);
-        }
-    }
-    triplets.to_csr()
+    band
 }

@@ -18,7 +18,7 @@ pub mod surface;
 pub use basis::LocalBasis;
 pub use curve::{NurbsCurve, NurbsCurve2, NurbsCurve3};
 pub use evaluate::SurfaceDerivatives;
-pub use gram::gram;
+pub use gram::{gram, gram_band};
 pub use interpolate::{GrevilleCollocation, interpolate_grid};
 pub use knot_vector::{KnotVector, KnotVectorError};
 pub use project::{CurveProjection, SearchRange, SurfaceLocator, SurfaceProjection, Wrap, foot_point};

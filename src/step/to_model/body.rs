@@ -111,6 +111,7 @@ pub(super) struct Bodies<'p> {
     pub(super) context: Arena<BodyId, usize>,
     pub(super) contexts: Contexts,
     pub(super) free_curves: Vec<CurveId>,
+    pub(super) free_curve_names: Vec<String>,
     products: &'p Products,
     pub(super) holders: Holders,
 }
@@ -122,6 +123,7 @@ impl<'p> Bodies<'p> {
             context: Arena::default(),
             contexts: Contexts::default(),
             free_curves: Vec::new(),
+            free_curve_names: Vec::new(),
             products,
             holders,
         }
@@ -233,7 +235,8 @@ impl<'p> Bodies<'p> {
                 _ => vec![item],
             };
             for member in members {
-                self.free_curve(builder, member, &mut seen);
+                let set = if member == item { None } else { Some(&view) };
+                self.free_curve(builder, member, set, &mut seen);
             }
         }
     }
@@ -242,6 +245,7 @@ impl<'p> Bodies<'p> {
         &mut self,
         builder: &mut Builder<'_, '_>,
         name: InstanceName,
+        set: Option<&EntityView<'_>>,
         seen: &mut HashSet<InstanceName>,
     ) {
         let Some(instance) = builder.scope.file.instance(name) else {
@@ -257,7 +261,14 @@ impl<'p> Bodies<'p> {
             return builder.report(ModelCode::NotReadYet, name, message);
         }
         match curve::resolve(builder.scope, name, Trims::Keep) {
-            Ok((name, _)) if seen.insert(name) => self.free_curves.push(builder.curve(name, name)),
+            Ok((inner, _)) if seen.insert(inner) => {
+                let own = [name, inner]
+                    .map(|name| builder.scope.view(name).map(|view| view.text("name").into_owned()));
+                let own = own.into_iter().flatten().find(|name| !name.is_empty());
+                let of_set = || set.map(|set| set.text("name").into_owned());
+                self.free_curve_names.push(own.or_else(of_set).unwrap_or_default());
+                self.free_curves.push(builder.curve(inner, inner));
+            }
             Ok(_) => {}
             Err(error) => builder.report(error.geometry_code(), name, error.to_string()),
         }

@@ -55,7 +55,7 @@ pub fn to_model(file: &ExchangeStructure, sink: &mut dyn Sink) -> Model {
     let mut builder = Builder::new(scope, sink);
     let mut bodies = Bodies::new(&products, holders);
     bodies.build(&mut builder, &roots);
-    let Bodies { mut attributes, context, mut contexts, free_curves, holders, .. } = bodies;
+    let Bodies { mut attributes, context, mut contexts, free_curves, free_curve_names, holders, .. } = bodies;
     let known = builder.origins.bodies.iter().filter_map(|(body, origin)| match origin {
         Origin::Instance(name) => Some((InstanceName(*name), body)),
         Origin::DirectoryEntry(_) => None,
@@ -82,6 +82,7 @@ pub fn to_model(file: &ExchangeStructure, sink: &mut dyn Sink) -> Model {
         faces,
         bodies: attributes,
         free_curves,
+        free_curve_names,
         products: products.all,
         occurrences,
         annotations,

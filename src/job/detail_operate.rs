@@ -1,0 +1,75 @@
+//! From the words of `detail_transfer` to the operation: curves are selected, the source's file is read, lengths
+//! get their units.
+
+use super::detail_file::{
+    CurveSelector, DetailScale, DetailTransfer, EndsWord, FrameWord, LevelsSetting, OwnDetailWord,
+};
+use super::operate::{OperateError, other_file};
+use super::select_curve;
+use crate::model::Model;
+use crate::ops::detail_transfer::{Existing, Frame, LevelChoice, Params, Plan, Scale, Settings, plan};
+use crate::units::LengthUnit;
+
+/// Plans a transfer onto a model.
+pub(super) fn planned(model: &Model, words: &DetailTransfer) -> Result<Plan, OperateError> {
+    let select = |model: &Model, selector: Option<&CurveSelector>| select_curve::one(model, selector);
+    let target = select(model, words.target.curve.as_ref()).map_err(OperateError::TargetCurve)?;
+    let other = words.source.file.as_deref().map(other_file).transpose()?;
+    let from = other.as_ref().unwrap_or(model);
+    let source = select(from, words.source.curve.as_ref()).map_err(OperateError::SourceCurve)?;
+    let unit = unit_of(model);
+    let source_unit = match (unit, unit_of(from)) {
+        (Some(target), Some(source)) => source.metres / target.metres,
+        _ => 1.0,
+    };
+    let tolerance = match (words.tolerance, unit) {
+        (Some(length), Some(unit)) => Some(length.0.in_unit(unit)),
+        _ => None,
+    };
+    let params = Params {
+        source_model: from,
+        source,
+        source_unit,
+        target,
+        part: words.interval.map(|part| part.0),
+        tolerance,
+        ends: words.ends.map(|ends| match ends {
+            EndsWord::Free => 0,
+            EndsWord::Position => 1,
+            EndsWord::Tangent => 2,
+            EndsWord::Curvature => 3,
+        }),
+        settings: settings(words),
+    };
+    Ok(plan(model, &params)?)
+}
+
+/// Free curves are in the units of the file's first context, the only one that nearly all files have.
+fn unit_of(model: &Model) -> Option<&LengthUnit> {
+    model.contexts.first().map(|context| &context.length)
+}
+
+fn settings(words: &DetailTransfer) -> Settings {
+    let local = words.frame == FrameWord::Local;
+    Settings {
+        levels: match &words.levels {
+            LevelsSetting::All => LevelChoice::All,
+            LevelsSetting::These(levels) => LevelChoice::These(levels.clone()),
+        },
+        gains: words.gain.0.clone(),
+        frame: if local { Frame::Local } else { Frame::Global },
+        scale: match words.scale {
+            Some(DetailScale::Factor(factor)) => Scale::Factor(factor),
+            Some(DetailScale::ArcLength) => Scale::ArcLength,
+            None if local => Scale::ArcLength,
+            None => Scale::Factor(1.0),
+        },
+        existing: match words.existing {
+            OwnDetailWord::Keep => Existing::Keep,
+            OwnDetailWord::Replace => Existing::Replace,
+        },
+        reverse: words.reverse,
+        roll: words.roll.to_radians(),
+        ..Settings::default()
+    }
+}

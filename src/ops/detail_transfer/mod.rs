@@ -1,0 +1,28 @@
+//! Detail of one curve carried to another: wavelet levels of a source curve added to a target curve.
+//!
+//! One step of synthesis is linear, so the levels of source and target need not match: the result is the exact
+//! sum of the target and the chosen levels of the source, on the union of their knots. In the local frame each
+//! wavelet turns with the coarse curve that it sits on, so that detail follows a target that runs elsewhere.
+//!
+//! [`transfer`] takes and gives splines; [`plan`] curves of a model, and gives a change set. Neither knows files.
+//!
+//! What it does not do: curves that are edges of faces, curves in the plane, periodic decompositions.
+//!
+//! Source: transfer of multiresolution curve details with the corrections of `docs/decisions/detail-transfer.md`.
+
+mod embed;
+pub mod error;
+mod frames;
+mod measure;
+pub mod plan;
+pub mod prepare;
+pub mod settings;
+pub mod spline;
+mod transfer;
+
+pub use error::TransferError;
+pub use plan::{Params, Plan, plan};
+pub use prepare::{Prepared, prepare};
+pub use settings::{Existing, Frame, LevelChoice, Scale, Settings};
+pub use spline::Spline;
+pub use transfer::{Transferred, transfer};
