@@ -183,7 +183,8 @@ fn read_again(
     if report.write_path == Some(WritePath::Patched) {
         let growth = report.before.as_ref().map_or(1.0, |before| before.growth(&after));
         let own = own_findings(&read.document, &model, growth);
-        findings.extend(new_findings(known, &own, growth).map(ToString::to_string));
+        let new = new_findings(known, &own, growth).filter(|finding| finding.is_error());
+        findings.extend(new.map(ToString::to_string));
         report.findings = own;
     }
     report.after = Some(after);
