@@ -101,7 +101,7 @@ fn examine(
     }
     checked.validators = judged.verdicts;
     Ok(!read.has_errors()
-        && !checked.findings.iter().any(OwnFinding::is_error)
+        && checked.findings.is_empty()
         && checked.validators.iter().all(|verdict| verdict.accepted))
 }
 
