@@ -118,7 +118,7 @@ fn one(
 }
 
 /// Passes a part through. The disk takes longer than the look at the file, so the bytes are on their way while they
-/// are read; a file that turns out damaged leaves nothing behind.
+/// are read; a file that turns out damaged leaves no file behind.
 fn copy(input: &Path, output: &Path, printer: &mut Printer) -> Result<(), PartError> {
     let unpacked = Read::unpack(input)?;
     let source = unpacked.source().clone();

@@ -6,6 +6,7 @@ use super::print::Printer;
 use super::show;
 use crate::diagnostic::Severity;
 use crate::job::failure::PartError;
+use crate::job::judge::chord;
 use crate::job::output::Staged;
 use crate::job::part::Read;
 use crate::job::plan::normal;
@@ -22,7 +23,8 @@ pub fn view(arguments: &ViewArguments, printer: &mut Printer) -> u8 {
         return exit_code::USAGE;
     }
     match write(arguments, printer) {
-        Ok(()) => exit_code::DONE,
+        Ok(true) => exit_code::DONE,
+        Ok(false) => exit_code::GATE,
         Err(error) => {
             show::part_error(printer, &arguments.part, &error);
             error.exit_code()
@@ -30,15 +32,15 @@ pub fn view(arguments: &ViewArguments, printer: &mut Printer) -> u8 {
     }
 }
 
-fn write(arguments: &ViewArguments, printer: &mut Printer) -> Result<(), PartError> {
+/// Writes the page; gives whether all of the part was understood and is shown.
+fn write(arguments: &ViewArguments, printer: &mut Printer) -> Result<bool, PartError> {
     let mut read = Read::file(&arguments.part)?;
     let model = read.model();
     show::diagnostics(printer, &arguments.part, &read);
     read.refuse_damage()?;
-    let unit = model.contexts.first().map(|context| &context.length);
-    let chord = arguments.tolerance.zip(unit).map(|(length, unit)| length.in_unit(unit));
+    let chord = arguments.tolerance.map(|length| chord(&model, length, "--tolerance")).transpose()?;
     let title = arguments.part.file_name().unwrap_or_default().to_string_lossy();
-    let page = view::page(&model, &title, chord.filter(|chord| *chord > 0.0));
+    let page = view::page(&model, &title, chord);
     let path = arguments.part.display();
     for face in page.missing.iter().take(NAMED) {
         printer.message(Severity::Warning, &format!("{path}: not shown: {face}"));
@@ -50,5 +52,7 @@ fn write(arguments: &ViewArguments, printer: &mut Printer) -> Result<(), PartErr
         let message = format!("{path}: only {} placed bodies are shown", view::MOST_BODIES);
         printer.message(Severity::Warning, &message);
     }
-    Staged::write(&arguments.output, page.html.as_bytes()).and_then(Staged::commit).map_err(PartError::Output)
+    let written = Staged::write(&arguments.output, page.html.as_bytes()).and_then(Staged::commit);
+    written.map_err(PartError::Output)?;
+    Ok(page.missing.is_empty() && !read.has_errors())
 }

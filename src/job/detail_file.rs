@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, de};
 
 use super::file::LengthSetting;
-use super::selector::{Pattern, instance};
+use super::selector::{NamePattern, instance};
 use crate::units::Length;
 
 /// Carry the detail of one curve onto another.
@@ -103,7 +103,7 @@ pub enum CurveSelector {
     /// The curve of a STEP instance name.
     Instance(u64),
     /// The free curve of a name, as a glob.
-    Name(Pattern),
+    Name(NamePattern),
 }
 
 /// Conditions on a curve.
@@ -111,7 +111,7 @@ pub enum CurveSelector {
 #[serde(deny_unknown_fields)]
 struct CurveConditions {
     /// Name of the free curve, or else of the set that holds it, as a glob: `"RIM*"`.
-    name: Pattern,
+    name: NamePattern,
 }
 
 impl<'de> Deserialize<'de> for CurveSelector {

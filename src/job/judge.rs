@@ -137,7 +137,7 @@ fn coarse_mesh(model: &Model, scratch: &Path, chord: Option<f64>) -> Result<Opti
 ///
 /// # Errors
 /// [`PartError::Mesh`] naming the face.
-pub fn solid_mesh(model: &Model, chord: Option<f64>) -> Result<Option<Mesh>, PartError> {
+fn solid_mesh(model: &Model, chord: Option<f64>) -> Result<Option<Mesh>, PartError> {
     let mesh = placed_mesh(model, chord, |body| model.brep.bodies[body].kind == BodyKind::Solid)?;
     Ok(Some(mesh).filter(|mesh| !mesh.triangles.is_empty()))
 }
@@ -149,7 +149,9 @@ pub fn solid_mesh(model: &Model, chord: Option<f64>) -> Result<Option<Mesh>, Par
 pub fn side_bytes(model: &Model, chord: Option<f64>, format: SideFormat) -> Result<Vec<u8>, PartError> {
     let mut bytes = Vec::new();
     let written = match format {
-        SideFormat::Stl | SideFormat::Off => return Ok(mesh_bytes(&whole_mesh(model, chord)?, format)),
+        SideFormat::Stl | SideFormat::Off => {
+            return Ok(mesh_bytes(&placed_mesh(model, chord, |_| true)?, format));
+        }
         SideFormat::ThreeMf => three_mf::write(&scene(model, chord)?, &mut bytes),
         SideFormat::Glb => glb::write(&scene(model, chord)?, &mut bytes),
     };
@@ -162,60 +164,60 @@ pub fn side_bytes(model: &Model, chord: Option<f64>, format: SideFormat) -> Resu
 ///
 /// # Errors
 /// [`PartError::Mesh`] naming the face.
-pub fn scene(model: &Model, chord: Option<f64>) -> Result<Scene, PartError> {
+fn scene(model: &Model, chord: Option<f64>) -> Result<Scene, PartError> {
     let rgb = |colour: Colour| [colour.red, colour.green, colour.blue];
-    let unit = common_unit(model);
-    let instances = Instances::of(model, &unit, Instances::LIMIT);
-    let mut meshes: BTreeMap<BodyId, Mesh> = BTreeMap::new();
     let mut parts = Vec::new();
-    for placed in &instances.bodies {
-        let mesh = match meshes.entry(placed.body) {
-            Entry::Occupied(known) => known.into_mut(),
-            Entry::Vacant(place) => place.insert(mesh_of(model, &[placed.body], chord)?),
-        };
-        let attributes = &model.bodies[placed.body];
-        let product = attributes.product.map(|at| model.products[at].name.clone());
-        let own = Some(attributes.own.name.clone()).filter(|name| !name.is_empty());
-        let shells = &model.brep.bodies[placed.body].shells;
-        let faces = shells.iter().flat_map(|&shell| &model.brep.shells[shell].faces);
-        let colour = |face: FaceId| model.faces[face].appearance.colour;
-        let of_product = attributes.product.and_then(|at| model.products[at].appearance.colour);
-        parts.push(Part {
-            name: own.or(product).unwrap_or_default(),
-            mesh: mesh.transformed(&placed.transform),
-            colour: attributes.own.appearance.colour.or(of_product).map(rgb),
-            faces: faces.filter_map(|&face| Some((face, rgb(colour(face)?)))).collect(),
-        });
-    }
-    Ok(Scene { metres: unit.metres, parts })
+    each_placed(
+        model,
+        chord,
+        |_| true,
+        |body, mesh| {
+            let attributes = &model.bodies[body];
+            let product = attributes.product.map(|at| &model.products[at]);
+            let own = Some(attributes.own.name.clone()).filter(|name| !name.is_empty());
+            let shells = &model.brep.bodies[body].shells;
+            let faces = shells.iter().flat_map(|&shell| &model.brep.shells[shell].faces);
+            let colour = |face: FaceId| model.faces[face].appearance.colour;
+            let of_product = product.and_then(|product| product.appearance.colour);
+            parts.push(Part {
+                name: own.or(product.map(|product| product.name.clone())).unwrap_or_default(),
+                mesh,
+                colour: attributes.own.appearance.colour.or(of_product).map(rgb),
+                faces: faces.filter_map(|&face| Some((face, rgb(colour(face)?)))).collect(),
+            });
+        },
+    )?;
+    Ok(Scene { metres: common_unit(model).metres, parts })
 }
 
-/// Triangles of all bodies, each where the assembly has it, in the unit of the first context.
-///
-/// # Errors
-/// [`PartError::Mesh`] naming the face.
-pub fn whole_mesh(model: &Model, chord: Option<f64>) -> Result<Mesh, PartError> {
-    placed_mesh(model, chord, |_| true)
-}
-
+/// Triangles of the bodies that are wanted, each where the assembly has it, in the unit of the first context.
 fn placed_mesh(
     model: &Model,
     chord: Option<f64>,
     wanted: impl Fn(BodyId) -> bool,
 ) -> Result<Mesh, PartError> {
     let mut whole = Mesh::default();
+    each_placed(model, chord, wanted, |_, mesh| whole.append(&mesh))?;
+    Ok(whole)
+}
+
+/// Shows the mesh of every instance of the bodies that are wanted; each body is meshed once.
+fn each_placed(
+    model: &Model,
+    chord: Option<f64>,
+    wanted: impl Fn(BodyId) -> bool,
+    mut show: impl FnMut(BodyId, Mesh),
+) -> Result<(), PartError> {
     let mut meshes: BTreeMap<BodyId, Mesh> = BTreeMap::new();
-    for placed in Instances::of(model, &common_unit(model), Instances::LIMIT).bodies {
-        if !wanted(placed.body) {
-            continue;
-        }
+    let instances = Instances::of(model, &common_unit(model), Instances::LIMIT);
+    for placed in instances.bodies.iter().filter(|placed| wanted(placed.body)) {
         let mesh = match meshes.entry(placed.body) {
             Entry::Occupied(known) => known.into_mut(),
-            Entry::Vacant(place) => place.insert(mesh_of(model, &[placed.body], chord)?),
+            Entry::Vacant(place) => place.insert(mesh_of(model, placed.body, chord)?),
         };
-        whole.append(&mesh.transformed(&placed.transform));
+        show(placed.body, mesh.transformed(&placed.transform));
     }
-    Ok(whole)
+    Ok(())
 }
 
 /// The unit in which bodies of different contexts are put together: that of the first.
@@ -223,12 +225,12 @@ fn common_unit(model: &Model) -> LengthUnit {
     model.contexts.first().map_or_else(LengthUnit::millimetre, |context| context.length.clone())
 }
 
-fn mesh_of(model: &Model, bodies: &[BodyId], chord: Option<f64>) -> Result<Mesh, PartError> {
+fn mesh_of(model: &Model, body: BodyId, chord: Option<f64>) -> Result<Mesh, PartError> {
     let mut tolerances = Tolerances::for_size(diagonal(model));
     if let Some(chord) = chord {
         tolerances.chord = chord;
     }
-    tessellate_bodies(&model.brep, bodies, &tolerances).map_err(|error| {
+    tessellate_bodies(&model.brep, &[body], &tolerances).map_err(|error| {
         let face = error.face().map(|face| format!("{}: ", super::select::describe(model, face)));
         PartError::Mesh(format!("{}{error}", face.unwrap_or_default()))
     })
@@ -267,7 +269,7 @@ fn diagonal(model: &Model) -> f64 {
 
 /// The bytes of a file of triangles alone: STL, or else OFF.
 #[must_use]
-pub fn mesh_bytes(mesh: &Mesh, format: SideFormat) -> Vec<u8> {
+fn mesh_bytes(mesh: &Mesh, format: SideFormat) -> Vec<u8> {
     let mut bytes = Vec::new();
     let written = match format {
         SideFormat::Stl => stl::write_binary(mesh, "resurf", &mut bytes),

@@ -7,6 +7,7 @@ use super::part::Read;
 use super::report::{DiagnosticReport, OperationReport};
 use super::select::{self, SelectError, point_in};
 use crate::brep::{EdgeId, FaceId, LoopId};
+use crate::diagnostic::Diagnostic;
 use crate::math::{Matrix3, Point3, Vector3};
 use crate::model::{ChangeSet, Model, Origin};
 use crate::ops::OperationError;
@@ -96,37 +97,36 @@ pub fn operate(model: &Model, source: &Source, operation: &Operation) -> Result<
         Operation::ConstrainedScale(settings) => scale(model, source, settings),
         Operation::DetailTransfer(words) => {
             let planned = super::detail_operate::planned(model, words)?;
-            let report = OperationReport {
-                kind: "detail_transfer".to_owned(),
-                changed: changed(&planned.change_set),
-                measures: serde_json::to_value(&planned.measures).unwrap_or_default(),
-                notes: planned.notes.iter().map(|note| DiagnosticReport::new(note, source)).collect(),
-            };
-            Ok((planned.change_set, report))
+            Ok(reported("detail_transfer", planned.change_set, &planned.measures, &planned.notes, source))
         }
         Operation::FeaturePaste(words) => {
             let planned = super::paste_operate::planned(model, words)?;
-            let report = OperationReport {
-                kind: "feature_paste".to_owned(),
-                changed: changed(&planned.change_set),
-                measures: serde_json::to_value(&planned.measures).unwrap_or_default(),
-                notes: planned.notes.iter().map(|note| DiagnosticReport::new(note, source)).collect(),
-            };
-            Ok((planned.change_set, report))
+            Ok(reported("feature_paste", planned.change_set, &planned.measures, &planned.notes, source))
         }
     }
+}
+
+/// A plan with its report.
+fn reported(
+    kind: &str,
+    changes: ChangeSet,
+    measures: &impl serde::Serialize,
+    notes: &[Diagnostic],
+    source: &Source,
+) -> Operated {
+    let report = OperationReport {
+        kind: kind.to_owned(),
+        changed: changed(&changes),
+        measures: serde_json::to_value(measures).unwrap_or_default(),
+        notes: notes.iter().map(|note| DiagnosticReport::new(note, source)).collect(),
+    };
+    (changes, report)
 }
 
 fn scale(model: &Model, source: &Source, settings: &ConstrainedScale) -> Result<Operated, OperateError> {
     let params = params(model, settings)?;
     let planned = plan(model, &params)?;
-    let report = OperationReport {
-        kind: "constrained_scale".to_owned(),
-        changed: changed(&planned.change_set),
-        measures: serde_json::to_value(&planned.measures).unwrap_or_default(),
-        notes: planned.notes.iter().map(|note| DiagnosticReport::new(note, source)).collect(),
-    };
-    Ok((planned.change_set, report))
+    Ok(reported("constrained_scale", planned.change_set, &planned.measures, &planned.notes, source))
 }
 
 /// The model of another file, whole or not at all.

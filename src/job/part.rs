@@ -26,7 +26,7 @@ impl Read {
     /// Reads a file from its place.
     ///
     /// # Errors
-    /// [`PartError::Input`], [`PartError::Open`].
+    /// As [`unpack`](Self::unpack).
     pub fn file(path: &Path) -> Result<Self, PartError> {
         Ok(Self::parse(Self::unpack(path)?))
     }
@@ -34,7 +34,8 @@ impl Read {
     /// Reads the bytes of a file from its place, and takes them out of their container.
     ///
     /// # Errors
-    /// [`PartError::Input`], [`PartError::Open`], [`PartError::Folder`].
+    /// [`PartError::Input`], [`PartError::Folder`], [`PartError::NoFile`], and [`PartError::Open`] for what is too large,
+    /// of no known format or badly packed.
     pub fn unpack(path: &Path) -> Result<Unpacked, PartError> {
         if path.is_dir() {
             return Err(PartError::Folder(path.to_owned()));

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::file::LengthSetting;
 use super::measure::kind;
-use super::selector::{ColourSetting, Conditions, Extreme, Pattern, Selector};
+use super::selector::{ColourSetting, Conditions, Extreme, NamePattern, Selector};
 use crate::brep::FaceId;
 use crate::math::Point3;
 use crate::mesh::{Tolerances, tessellate_faces};
@@ -187,7 +187,7 @@ fn list<'a>(model: &'a Model, conditions: &Conditions) -> Result<Vec<Condition<'
             offers: Box::new(move |face| model.colour_of(face).map(|c| hex(bytes(c))).into_iter().collect()),
         });
     }
-    let names: [(&str, &Option<Pattern>, NamesOf); 3] = [
+    let names: [(&str, &Option<NamePattern>, NamesOf); 3] = [
         ("product", &conditions.product, product_names),
         ("layer", &conditions.layer, layers),
         ("name", &conditions.name, face_names),

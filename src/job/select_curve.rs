@@ -24,7 +24,8 @@ pub(super) fn one(model: &Model, selector: Option<&CurveSelector>) -> Result<Cur
         }
         Some(CurveSelector::Name(pattern)) => {
             let glob = pattern.matcher();
-            (free().filter(|&curve| glob.is_match(name(model, curve))).collect(), format!("name `{pattern}`"))
+            let named = free().zip(&model.free_curve_names).filter(|(_, name)| glob.is_match(name));
+            (named.map(|(curve, _)| curve).collect(), format!("name `{pattern}`"))
         }
         None => (free().collect(), "a selector that is left out".to_owned()),
     };

@@ -23,7 +23,7 @@ pub enum Selector {
 #[schemars(extend("minProperties" = 1))]
 pub struct Conditions {
     /// Name of the face, or else of its body, as a glob: `"HOOD*"`.
-    pub name: Option<Pattern>,
+    pub name: Option<NamePattern>,
     /// The one face nearest to this point, among those for which the other keys hold.
     pub near: Option<[LengthSetting; 3]>,
     /// Kind of its surface.
@@ -31,9 +31,9 @@ pub struct Conditions {
     /// Colour as `"#rrggbb"`, its own or its body's.
     pub colour: Option<ColourSetting>,
     /// Name or id of its product, as a glob.
-    pub product: Option<Pattern>,
+    pub product: Option<NamePattern>,
     /// Name of a layer that it or its body lies on, as a glob.
-    pub layer: Option<Pattern>,
+    pub layer: Option<NamePattern>,
     /// The one face of the largest or smallest area, among those for which the other keys hold.
     pub area: Option<Extreme>,
 }
@@ -92,9 +92,9 @@ pub enum Extreme {
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(try_from = "String")]
 #[schemars(with = "String")]
-pub struct Pattern(Glob);
+pub struct NamePattern(Glob);
 
-impl TryFrom<String> for Pattern {
+impl TryFrom<String> for NamePattern {
     type Error = String;
     fn try_from(text: String) -> Result<Self, String> {
         Glob::new(&text)
@@ -103,7 +103,7 @@ impl TryFrom<String> for Pattern {
     }
 }
 
-impl Pattern {
+impl NamePattern {
     /// What decides whether a name matches.
     #[must_use]
     pub fn matcher(&self) -> GlobMatcher {
@@ -111,7 +111,7 @@ impl Pattern {
     }
 }
 
-impl std::fmt::Display for Pattern {
+impl std::fmt::Display for NamePattern {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(self.0.glob())
     }

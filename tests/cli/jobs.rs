@@ -208,3 +208,21 @@ fn a_part_converts_to_formats_with_names_and_colours() {
         assert!(bytes.starts_with(magic), "{name}");
     }
 }
+
+#[test]
+fn slips_in_factors_and_patterns_are_told_before_any_part_is_touched() {
+    for (key, value) in [
+        ("factors = [1e300, 1, 1]", "operation[0].factors"),
+        ("factors = [1, 1e-300, 1]", "operation[0].factors"),
+        ("factors = [1, 1, 1]\nface = { name = \"[!\" }", "is no pattern of names"),
+    ] {
+        let job = format!(
+            "version = 1\ninputs = [\"door.step\"]\noutput = \"out/{{stem}}.step\"\n\
+             [[operation]]\nkind = \"constrained_scale\"\n{key}\n"
+        );
+        let fixture = Fixture::new().sample("door/door.step").file("job.toml", job);
+        let said = fixture.run(&["run", "job.toml"]);
+        assert!(said.starts_with("exit code: 2\n") && said.contains(value), "{key}: {said}");
+        assert!(!fixture.path("out").exists(), "{key}");
+    }
+}

@@ -30,7 +30,6 @@ impl Fixture {
     /// An empty folder.
     pub fn new() -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder");
-        // Answers of programs that happen to be installed must not decide a test.
         let variables = vec![("SOURCE_DATE_EPOCH".to_owned(), "0".to_owned())];
         Self { folder, variables }
     }
@@ -68,6 +67,7 @@ impl Fixture {
             .args(arguments)
             .current_dir(self.folder.path())
             .env("NO_COLOR", "1")
+            // Programs that somebody set up must not decide a test.
             .env_remove("RESURF_FREECADCMD")
             .env_remove("RESURF_OPENSCAD")
             .envs(self.variables.iter().map(|(name, value)| (name.as_str(), value.as_str())))

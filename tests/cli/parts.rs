@@ -160,3 +160,52 @@ fn gaps_of_one_part_of_an_assembly_may_grow_with_it() {
     let said = fixture.run(&["run", "job.toml"]);
     assert!(said.starts_with("exit code: 0\n"), "{said}");
 }
+
+#[test]
+#[cfg(unix)]
+fn what_has_no_end_is_refused_and_what_is_too_large_is_not_read() {
+    let fixture = Fixture::new();
+    let said = fixture.run(&["inspect", "/dev/zero"]);
+    assert!(said.starts_with("exit code: 3\n") && said.contains("no regular file"), "{said}");
+    // A hole takes no room on the disk.
+    let large = std::fs::File::create(fixture.path("large.step")).expect("a file");
+    large.set_len(1 << 32).expect("a hole");
+    let said = fixture.run(&["inspect", "large.step"]);
+    assert!(said.starts_with("exit code: 6\n") && said.contains("4294967296 bytes"), "{said}");
+}
+
+#[test]
+fn meshes_stand_where_the_assembly_has_them() {
+    let fixture = Fixture::new().sample("assembly/assembly.step");
+    let said = fixture.run(&["convert", "assembly.step", "-o", "out.off"]);
+    assert!(said.starts_with("exit code: 0\n"), "{said}");
+    let text = std::fs::read_to_string(fixture.path("out.off")).expect("a mesh");
+    let vertices: Vec<[f64; 3]> = text
+        .lines()
+        .map(|line| line.split_whitespace().map_while(|word| word.parse().ok()).collect::<Vec<f64>>())
+        .filter_map(|numbers| numbers.try_into().ok())
+        .collect();
+    // The bracket is a box of 60 x 40 x 20, put at (500, 600, 50) and turned by a quarter: its x points along y.
+    for (x, y, z) in [(500.0, 600.0, 50.0), (460.0, 660.0, 70.0), (500.0, 660.0, 70.0), (460.0, 600.0, 50.0)]
+    {
+        let near = |p: &&[f64; 3]| (p[0] - x).abs() + (p[1] - y).abs() + (p[2] - z).abs() < 1e-6;
+        assert!(vertices.iter().any(|p| near(&p)), "no vertex at ({x}, {y}, {z})");
+    }
+    let unplaced = |p: &[f64; 3]| p[0].abs() + p[1].abs() + p[2].abs() < 1e-6;
+    assert!(!vertices.iter().any(unplaced), "the bracket's own origin");
+}
+
+#[test]
+fn a_page_of_half_a_part_says_so_by_its_exit_code() {
+    let door = include_str!("../../samples/door/door.step");
+    // The greatest multiplicity of one knot vector made impossible: the surface cannot be read.
+    let broken = door.replacen("(4,1", "(9,1", 1);
+    assert_ne!(broken, door, "the sample has a knot vector that begins so");
+    let fixture = Fixture::new().file("door.step", door).file("broken.step", broken);
+    let whole = fixture.run(&["view", "door.step", "-o", "door.html"]);
+    assert!(whole.starts_with("exit code: 0\n"), "{whole}");
+    let half = fixture.run(&["view", "broken.step", "-o", "broken.html"]);
+    assert!(half.starts_with("exit code: 1\n"), "{half}");
+    let fine = fixture.run(&["view", "door.step", "-o", "fine.html", "--tolerance", "1e-12"]);
+    assert!(fine.starts_with("exit code: 2\n") && fine.contains("--tolerance"), "{fine}");
+}

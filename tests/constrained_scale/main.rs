@@ -11,3 +11,6 @@ mod parts;
 mod plan;
 mod thin_solid;
 mod vectors;
+
+#[path = "../support/nets.rs"]
+mod nets;

@@ -2,32 +2,10 @@
 
 use std::f64::consts::PI;
 
-use resurf::geometry::nurbs::{KnotVector, NurbsSurface};
+pub use crate::nets::{part, weighted_part};
+use resurf::geometry::nurbs::NurbsSurface;
 use resurf::math::Point3;
 use resurf::ops::constrained_scale::{Contour, Energy, Freedom, HeldLoop, Hold, Scaling};
-
-/// Clamped uniform knots on [0, 1], control points `f(x, y)` at the Greville abscissae.
-pub fn part(degree: [usize; 2], spans: [usize; 2], f: impl Fn(f64, f64) -> [f64; 3]) -> NurbsSurface {
-    weighted_part(degree, spans, f, |_, _| 1.0)
-}
-
-pub fn weighted_part(
-    degree: [usize; 2],
-    spans: [usize; 2],
-    f: impl Fn(f64, f64) -> [f64; 3],
-    w: impl Fn(f64, f64) -> f64,
-) -> NurbsSurface {
-    let u = KnotVector::clamped_uniform(degree[0], spans[0], 0.0, 1.0).unwrap();
-    let v = KnotVector::clamped_uniform(degree[1], spans[1], 0.0, 1.0).unwrap();
-    let mut net = Vec::new();
-    for x in u.greville() {
-        for y in v.greville() {
-            let (p, weight) = (f(x, y), w(x, y));
-            net.push([p[0] * weight, p[1] * weight, p[2] * weight, weight]);
-        }
-    }
-    NurbsSurface::new(u, v, net).unwrap()
-}
 
 /// Ellipse polygon of `n` vertices.
 pub fn ellipse(center: [f64; 2], radii: [f64; 2], turn: f64, n: usize) -> Vec<[f64; 2]> {

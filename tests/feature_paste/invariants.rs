@@ -7,7 +7,7 @@ use resurf::ops::feature_paste::{
 };
 
 use super::parts::{
-    circle, cylinder, distance, moved_plane, part, pasted, placed_error, points, source, weighted,
+    circle, cylinder, distance, moved_plane, part, pasted, placed_error, points, source, weighted_part,
     weighted_source,
 };
 
@@ -164,7 +164,7 @@ fn a10_the_fit_is_exact_where_the_grids_coincide() {
 /// Weights that are all 3 mean the same surface as weights that are all 1.
 #[test]
 fn a_common_factor_of_the_weights_does_not_matter() {
-    let target = weighted([3, 3], [8, 7], |x, y| [9.0 * x, 9.0 * y, x * x], |_, _| 3.0);
+    let target = weighted_part([3, 3], [8, 7], |x, y| [9.0 * x, 9.0 * y, x * x], |_, _| 3.0);
     let plain = part([3, 3], [8, 7], |x, y| [9.0 * x, 9.0 * y, x * x]);
     for method in [Method::Displacement, Method::Poisson, Method::Biharmonic] {
         let a = pasted(&weighted_source(), &plain, 0.42, &by(method)).unwrap();

@@ -7,3 +7,6 @@ mod fairness;
 mod invariants;
 mod parts;
 mod vectors;
+
+#[path = "../support/nets.rs"]
+mod nets;

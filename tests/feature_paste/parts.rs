@@ -2,32 +2,10 @@
 
 use std::f64::consts::PI;
 
-use resurf::geometry::nurbs::{KnotVector, NurbsSurface};
+pub use crate::nets::{part, weighted_part};
+use resurf::geometry::nurbs::NurbsSurface;
 use resurf::math::{Affine, Matrix3, Point3, Vector3};
 use resurf::ops::feature_paste::{Feature, Ground, PasteError, Pasted, Settings, paste};
-
-/// Clamped uniform knots on [0, 1], control points `f(x, y)` at the Greville abscissae.
-pub fn part(degree: [usize; 2], spans: [usize; 2], f: impl Fn(f64, f64) -> [f64; 3]) -> NurbsSurface {
-    weighted(degree, spans, f, |_, _| 1.0)
-}
-
-pub fn weighted(
-    degree: [usize; 2],
-    spans: [usize; 2],
-    f: impl Fn(f64, f64) -> [f64; 3],
-    w: impl Fn(f64, f64) -> f64,
-) -> NurbsSurface {
-    let u = KnotVector::clamped_uniform(degree[0], spans[0], 0.0, 1.0).unwrap();
-    let v = KnotVector::clamped_uniform(degree[1], spans[1], 0.0, 1.0).unwrap();
-    let mut net = Vec::new();
-    for x in u.greville() {
-        for y in v.greville() {
-            let (p, weight) = (f(x, y), w(x, y));
-            net.push([p[0] * weight, p[1] * weight, p[2] * weight, weight]);
-        }
-    }
-    NurbsSurface::new(u, v, net).unwrap()
-}
 
 pub fn circle(radius: f64) -> Vec<[f64; 2]> {
     let vertex = |k: u32| {
@@ -50,7 +28,7 @@ pub fn source() -> NurbsSurface {
 }
 
 pub fn weighted_source() -> NurbsSurface {
-    weighted([3, 3], [12, 12], bump, |x, y| {
+    weighted_part([3, 3], [12, 12], bump, |x, y| {
         let r = (x - 0.5).hypot(y - 0.5);
         if r < 0.25 { 1.0 + 0.4 * (-r * r / 0.004).exp() } else { 1.0 }
     })

@@ -141,8 +141,20 @@ fn piece<C>(
     of: impl FnOnce(&C) -> ((f64, f64), Option<f64>),
     ends: Ends,
 ) -> Result<Trimmed<C>, ReadError> {
-    let ((low, high), period) = of(&basis);
-    let (mut start, mut end) = if ends.forward { (ends.from, ends.to) } else { (ends.to, ends.from) };
+    let (domain, period) = of(&basis);
+    let (start, end) = interval([ends.from, ends.to], ends.forward, domain, period)?;
+    Ok(Trimmed { basis: Box::new(basis), start, end, forward: ends.forward })
+}
+
+/// The parameters from one trim to the other along the sense: over the seam where what is trimmed is closed, and the
+/// whole turn from a parameter to itself.
+pub(super) fn interval(
+    [from, to]: [f64; 2],
+    forward: bool,
+    (low, high): (f64, f64),
+    period: Option<f64>,
+) -> Result<(f64, f64), ReadError> {
+    let (mut start, mut end) = if forward { (from, to) } else { (to, from) };
     match period {
         Some(period) => {
             let way = (end - start).rem_euclid(period);
@@ -151,7 +163,7 @@ fn piece<C>(
             start = low + (start - low).rem_euclid(period);
             end = start + if whole { period } else { way };
         }
-        // An open curve has one piece between two of its points, whatever the order in which they stand.
+        // What is open has one piece between two parameters, whatever the order in which they stand.
         None => {
             if start > end {
                 std::mem::swap(&mut start, &mut end);
@@ -159,10 +171,8 @@ fn piece<C>(
             (start, end) = (start.max(low), end.min(high));
         }
     }
-    if !(end > start && (end - start).is_finite()) {
-        return Err(ReadError::NoPiece { from: ends.from, to: ends.to });
-    }
-    Ok(Trimmed { basis: Box::new(basis), start, end, forward: ends.forward })
+    let whole = end > start && (end - start).is_finite();
+    if whole { Ok((start, end)) } else { Err(ReadError::NoPiece { from, to }) }
 }
 
 /// Part of a period below which two trims count as one.

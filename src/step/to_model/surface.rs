@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::bounded_curve::{Nest, within};
+use super::bounded_curve::{Nest, interval, within};
 use super::curve::{self, Trims, positive};
 use super::curve2d::parameter_scale;
 use super::error::ReadError;
@@ -110,43 +110,10 @@ fn trimmed(scope: Scope<'_>, view: &EntityView<'_>, nest: Nest<'_>) -> Result<Su
     let (us, vs) = basis.domain();
     let (pu, pv) = basis.periods();
     let forward = [boolean(usense, "usense")?, boolean(vsense, "vsense")?];
-    let u = side([real(u1, "u1")? * su, real(u2, "u2")? * su], forward[0], us, pu)?;
-    let v = side([real(v1, "v1")? * sv, real(v2, "v2")? * sv], forward[1], vs, pv)?;
+    let u = interval([real(u1, "u1")? * su, real(u2, "u2")? * su], forward[0], us, pu)?;
+    let v = interval([real(v1, "v1")? * sv, real(v2, "v2")? * sv], forward[1], vs, pv)?;
     Ok(Surface::Trimmed { basis, u, v, forward })
 }
-
-/// One side of a rectangle: from the first trim to the second along the sense, over the seam where the surface
-/// is closed.
-fn side(
-    [from, to]: [f64; 2],
-    forward: bool,
-    (low, high): (f64, f64),
-    period: Option<f64>,
-) -> Result<(f64, f64), ReadError> {
-    let (mut start, mut end) = if forward { (from, to) } else { (to, from) };
-    match period {
-        Some(period) => {
-            let way = (end - start).rem_euclid(period);
-            let whole = way <= SAME * period || way >= (1.0 - SAME) * period;
-            start = low + (start - low).rem_euclid(period);
-            end = start + if whole { period } else { way };
-        }
-        None => {
-            if start > end {
-                std::mem::swap(&mut start, &mut end);
-            }
-            (start, end) = (start.max(low), end.min(high));
-        }
-    }
-    if end > start && (end - start).is_finite() {
-        Ok((start, end))
-    } else {
-        Err(ReadError::NoPiece { from, to })
-    }
-}
-
-/// Part of a period below which two trims count as one.
-const SAME: f64 = 1e-9;
 
 /// A `RECTANGULAR_COMPOSITE_SURFACE`: a list of patches along `v` for each step of `u`.
 fn composite(scope: Scope<'_>, view: &EntityView<'_>, nest: Nest<'_>) -> Result<Surface, ReadError> {
