@@ -99,6 +99,9 @@ const MAX_POINTS: usize = 1 << 14;
 /// tolerance says: far below any detail, far above rounding.
 const SURE_PART: f64 = 1e-6;
 
+/// Part of a parameter curve's domain by which a point may lie past its end through rounding.
+const PAST_END: f64 = 1e-9;
+
 /// The loops of a face in file order.
 ///
 /// # Errors
@@ -280,7 +283,8 @@ impl<'a> Walk<'a> {
         let (low, high) = pcurve.domain();
         along.iter().all(|at| {
             let p = pcurve.point_at(at.t);
-            let inside = at.t >= low - 1e-9 * (high - low) && at.t <= high + 1e-9 * (high - low);
+            let slack = PAST_END * (high - low);
+            let inside = at.t >= low - slack && at.t <= high + slack;
             let conic = pcurve.repeats();
             (inside || conic) && (self.surface.point(p.x, p.y) - at.point).norm() <= limit
         })

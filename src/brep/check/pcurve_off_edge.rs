@@ -18,6 +18,10 @@ pub struct PcurveOffEdge {
 /// Samples of each pcurve: enough to meet an error of low degree on every part of it.
 const SAMPLES: usize = 17;
 
+/// Part of an edge's interval by which a parameter curve may fall short of it and still count as running over the
+/// same parameters: domains are often written with six digits.
+const SAME_DOMAIN: f64 = 1e-6;
+
 /// Looks at the coedges of a face that have pcurves.
 ///
 /// The standard asks that pcurve and curve be the same points, not that they share the parameter; a pcurve
@@ -33,7 +37,7 @@ pub(super) fn check(brep: &Brep, face: FaceId, tolerance: f64, findings: &mut Ve
         };
         let (low, high) = (range.start.min(range.end), range.start.max(range.end));
         let (first, last) = pcurve.domain();
-        let slack = 1e-6 * (high - low);
+        let slack = SAME_DOMAIN * (high - low);
         let shares = first <= low + slack && last >= high - slack;
         let mut worst = (0.0, Point3::origin());
         for i in 0..SAMPLES {

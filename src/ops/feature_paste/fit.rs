@@ -21,6 +21,8 @@ const DEGREE: usize = 3;
 const MAX_LEVEL: u32 = 3;
 /// Parts of the greatest entry below which an entry of the parameter map says nothing about density.
 const SMALL_ENTRY: f64 = 1e-3;
+/// Part of a domain by which a region may reach past the border through rounding.
+const PAST_BORDER: f64 = 1e-9;
 /// Slack of a count of parts: a span that fits in by rounding is not cut.
 const WHOLE: f64 = 1e-6;
 
@@ -120,12 +122,7 @@ impl<'a> Field<'a> {
         settings: &Settings,
     ) -> Result<Self, PasteError> {
         let small = PasteError::RegionTooSmall { rows: 0, columns: 0, needed: NEEDED };
-        let extent = own.extent().ok_or(small)?;
-        let knots = [source.knots_u(), source.knots_v()];
-        let window = [0, 1].map(|k| {
-            let all = knots[k].knots();
-            (all[extent[k].0], all[extent[k].1 + knots[k].degree() + 1])
-        });
+        let window = own.support([source.knots_u(), source.knots_v()]).ok_or(small)?;
         let singular = PasteError::SingularParametrisation { side: "target", at: map.to };
         let inverse = map.inverse().ok_or(singular)?;
         let side = if settings.mirror == Mirror::None { 1.0 } else { -1.0 };
@@ -194,7 +191,7 @@ fn refuse_outside(corners: &[[f64; 2]; 4], target: &NurbsSurface) -> Result<(), 
     let domains = [target.knots_u().domain(), target.knots_v().domain()];
     for (k, domain) in domains.into_iter().enumerate() {
         let reach = extent(corners, k);
-        let slack = 1e-9 * (domain.1 - domain.0);
+        let slack = PAST_BORDER * (domain.1 - domain.0);
         if reach.0 < domain.0 - slack || reach.1 > domain.1 + slack {
             return Err(PasteError::OutsideTarget { direction: ["u", "v"][k], reach, domain });
         }

@@ -100,6 +100,18 @@ impl Mask {
         extent
     }
 
+    /// Parameters on which the control points of the set act: from the first knot of the first to the last knot of the
+    /// last, along `u` and along `v`; `None` for the empty set.
+    #[must_use]
+    pub fn support(&self, knots: [&KnotVector; 2]) -> Option<[(f64, f64); 2]> {
+        let extent = self.extent()?;
+        Some([0, 1].map(|k| {
+            let (first, last) = extent[k];
+            let all = knots[k].knots();
+            (all[first], all[last + knots[k].degree() + 1])
+        }))
+    }
+
     /// Whether two sets of the same shape share a place.
     #[must_use]
     pub fn meets(&self, other: &Self) -> bool {

@@ -8,6 +8,9 @@ use crate::step::entity::Entity;
 use crate::step::view::EntityView;
 use crate::step::{InstanceName, Parameter};
 
+/// Sine of the angle between two unit axes below which they count as one: no third can be taken from them.
+const PARALLEL: f64 = 1e-12;
+
 /// From coordinates in the space that an item is in to that of what it places: a frame, or an operator.
 ///
 /// For a frame, from coordinates in the frame; for an operator, what it does.
@@ -59,7 +62,7 @@ fn axes(
     second: Option<Vector3<f64>>,
     third: Option<Vector3<f64>>,
 ) -> Option<Matrix3<f64>> {
-    let third = third.or_else(|| first.zip(second).and_then(|(x, y)| x.cross(&y).try_normalize(1e-12)));
+    let third = third.or_else(|| first.zip(second).and_then(|(x, y)| x.cross(&y).try_normalize(PARALLEL)));
     let base = Frame::from_axis(crate::math::Point3::origin(), third.unwrap_or_else(Vector3::z), first)?;
     let turned = second.is_some_and(|second| second.dot(&base.y) < 0.0);
     Some(Matrix3::from_columns(&[base.x, if turned { -base.y } else { base.y }, base.z]))

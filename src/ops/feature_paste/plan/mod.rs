@@ -187,14 +187,11 @@ fn turn_to(surface: &NurbsSurface, at: [f64; 2], along: Option<Vector3<f64>>) ->
     Ok(y.atan2(x))
 }
 
-/// Parameters that the changed control points act on.
+/// Parameters that the changed control points act on; where none has changed, a corner, which overlaps nothing.
 fn region_of(pasted: &Pasted) -> [(f64, f64); 2] {
     let knots = [pasted.surface.knots_u(), pasted.surface.knots_v()];
-    let extent = pasted.changed.extent().unwrap_or([(0, 0); 2]);
-    [0, 1].map(|k| {
-        let all = knots[k].knots();
-        (all[extent[k].0], all[extent[k].1 + knots[k].degree() + 1])
-    })
+    let corner = || knots.map(|along| (along.domain().0, along.domain().0));
+    pasted.changed.support(knots).unwrap_or_else(corner)
 }
 
 fn overlap(a: &[(f64, f64); 2], b: &[(f64, f64); 2]) -> bool {
@@ -248,7 +245,7 @@ pub fn circular_pattern(
     along: &Vector3<f64>,
 ) -> Vec<Place> {
     let Some(direction) = axis.1.try_normalize(0.0) else { return vec![*first] };
-    let full = (angle.abs() - std::f64::consts::TAU).abs() < 1e-9;
+    let full = (angle.abs() - std::f64::consts::TAU).abs() < NO_TURN;
     let steps = if full { count } else { count.saturating_sub(1).max(1) };
     let place = |k: usize| {
         let turn = rotation(&direction, angle * k as f64 / steps as f64);
