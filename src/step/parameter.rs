@@ -1,7 +1,7 @@
 //! Parameters of a record: a cursor over the text that decodes nothing before it is asked for.
 //!
 //! [`Parameters`] allocates nothing and never recurses: a list is skipped by counting parentheses, and read
-//! when its own cursor is used. What cannot be read is a [`Parameter::Malformed`]; the next parameter
+//! when its own cursor is used. What cannot be read is a [`ParameterKind::Malformed`]; the next parameter
 //! is found all the same. Values are not checked against any schema here.
 
 use std::borrow::Cow;

@@ -200,7 +200,7 @@ pub struct Feature<'a> {
     pub source: &'a NurbsSurface,
     /// Closed polygon round the feature in the source's parameters.
     pub contour: &'a [[f64; 2]],
-    /// Parameters of the source that go to [`Place::at`].
+    /// Parameters of the source that go to [`Ground::at`].
     pub anchor: [f64; 2],
 }
 
