@@ -3,17 +3,18 @@
 //! The source may be a face of another file, in other units. Loops of the target are kept clear of the feature, or
 //! the paste is refused. Pure: no I/O. All or nothing.
 
+mod exact;
 mod measure;
 mod source;
 mod target;
 
 pub use measure::{Measures, PlaceMeasures};
 
-use super::settings::{Mirror, Pasted, Settings};
-use super::{Feature, Ground, PasteError, contour::Plane, paste};
+use super::across_seam::paste_across;
+use super::settings::{Existing, Mirror, Pasted, Settings};
+use super::{Feature, Ground, PasteError, contour::Plane};
 use crate::brep::FaceId;
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::geometry::Surface;
 use crate::geometry::nurbs::NurbsSurface;
 use crate::math::{Affine, Matrix3, Point3, Vector3};
 use crate::model::{ChangeSet, Model};
@@ -117,34 +118,26 @@ pub fn plan(model: &Model, params: &Params<'_>) -> Result<Plan, OperationError> 
     let mut surface = target.surface.clone();
     let mut places: Vec<PlaceMeasures> = Vec::new();
     let mut regions: Vec<[(f64, f64); 2]> = Vec::new();
+    let mut seam_moved = [false; 2];
     let before = surface.net().len();
     for place in &params.places {
-        let at = target.locate(&surface, place)?;
-        let greatest = place.scale.iter().fold(0.0, |a: f64, s| a.max(s.abs()));
-        let settings = Settings {
-            scale: place.scale,
-            mirror: place.mirror,
-            angle: snapped(place.angle + turn_to(&surface, at, place.along)?),
-            tolerance: params.tolerance.unwrap_or(TOLERANCE * source.size * greatest),
-            ..params.settings.clone()
-        };
-        let feature = Feature { source: &source.surface, contour: &source.contour, anchor: source.anchor };
-        let mut pasted = paste(&feature, &Ground { target: &surface, at }, &settings)?;
-        let region = region_of(&pasted);
-        if let Some(first) = regions.iter().position(|other| overlap(other, &region)) {
+        let one = pasted_at(&target, &source, &surface, place, params)?;
+        if let Some(first) = regions.iter().position(|other| target.overlap(other, &one.region)) {
             return Err(PasteError::PlacesOverlap { first, second: regions.len() }.into());
         }
-        regions.push(region);
-        let cut = keep_loops(&target, &mut pasted, params.loops)?;
-        if cut > 0 {
-            notes.push(note(
-                "paste.cut-at-loops",
-                Severity::Warning,
-                format!("{cut} control points stay, because they act on loops of the target: the feature is cut off there"),
-            ));
+        regions.push(one.region);
+        if one.cut > 0 {
+            let message = format!(
+                "{} control points stay, because they act on loops of the target: the feature is cut off there",
+                one.cut
+            );
+            notes.push(note("paste.cut-at-loops", Severity::Warning, message));
         }
-        places.push(measure::measure(place, &pasted, cut));
-        surface = pasted.surface;
+        for (k, moved) in seam_moved.iter_mut().enumerate() {
+            *moved |= on_seam(&one.pasted.changed, k);
+        }
+        places.push(measure::measure(place, &one.pasted, one.region, one.cut));
+        surface = one.pasted.surface;
     }
     let lost = places.iter().map(|place| place.lost_detail).fold(0.0, f64::max);
     if lost > LOST * source.size {
@@ -156,11 +149,56 @@ pub fn plan(model: &Model, params: &Params<'_>) -> Result<Plan, OperationError> 
     let measures = Measures {
         face: model.origins.faces[params.target].to_string(),
         control_points: [before, surface.net().len()],
+        converted: target.converted.map(str::to_owned),
+        pcurve_error: target.converted.map(|_| target.pcurve_error),
+        seam_moved,
         places,
     };
-    let mut change_set = ChangeSet::default();
-    change_set.surfaces.insert(params.target, Surface::Nurbs(surface));
-    Ok(Plan { change_set, measures, notes })
+    Ok(Plan { change_set: target.changes(model, params.target, surface, seam_moved), measures, notes })
+}
+
+/// One place done.
+struct PastedAt {
+    pasted: Pasted,
+    /// Parameters that it acts on, in the covering plane.
+    region: [(f64, f64); 2],
+    /// Control points that stayed for loops of the target.
+    cut: usize,
+}
+
+fn pasted_at(
+    target: &target::Target,
+    source: &source::Prepared,
+    surface: &NurbsSurface,
+    place: &Place,
+    params: &Params<'_>,
+) -> Result<PastedAt, OperationError> {
+    let at = target.locate(surface, place)?;
+    let greatest = place.scale.iter().fold(0.0, |a: f64, s| a.max(s.abs()));
+    let settings = Settings {
+        scale: place.scale,
+        mirror: place.mirror,
+        angle: snapped(place.angle + turn_to(surface, at, place.along)?),
+        tolerance: params.tolerance.unwrap_or(TOLERANCE * source.size * greatest),
+        // An exact quadric has nothing in the feature's way.
+        existing: match (params.settings.existing, target.converted) {
+            (Existing::Replace, Some(_)) => Existing::Keep,
+            (existing, _) => existing,
+        },
+        ..params.settings.clone()
+    };
+    target.refuse_method(&settings)?;
+    let feature = Feature { source: &source.surface, contour: &source.contour, anchor: source.anchor };
+    let crossed = paste_across(&feature, &Ground { target: surface, at }, &settings, target.round)?;
+    let (mut pasted, region) = (crossed.pasted, crossed.region);
+    let cut = keep_loops(target, &mut pasted, params.loops)?;
+    Ok(PastedAt { pasted, region, cut })
+}
+
+/// Whether a set has a place on the first line of a direction.
+fn on_seam(changed: &Mask, k: usize) -> bool {
+    let (rows, columns) = changed.shape();
+    if k == 0 { (0..columns).any(|j| changed.contains(0, j)) } else { (0..rows).any(|i| changed.contains(i, 0)) }
 }
 
 fn note(code: &'static str, severity: Severity, message: String) -> Diagnostic {
@@ -185,17 +223,6 @@ fn turn_to(surface: &NurbsSurface, at: [f64; 2], along: Option<Vector3<f64>>) ->
         return Err(PasteError::BadSetting { what: "along", expected: "a direction in the surface", found });
     }
     Ok(y.atan2(x))
-}
-
-/// Parameters that the changed control points act on; where none has changed, a corner, which overlaps nothing.
-fn region_of(pasted: &Pasted) -> [(f64, f64); 2] {
-    let knots = [pasted.surface.knots_u(), pasted.surface.knots_v()];
-    let corner = || knots.map(|along| (along.domain().0, along.domain().0));
-    pasted.changed.support(knots).unwrap_or_else(corner)
-}
-
-fn overlap(a: &[(f64, f64); 2], b: &[(f64, f64); 2]) -> bool {
-    (0..2).all(|k| a[k].0 < b[k].1 && b[k].0 < a[k].1)
 }
 
 /// Takes back what would move a loop of the target, or refuses; gives the count of control points that stay.
