@@ -103,6 +103,10 @@ pub fn operate(model: &Model, source: &Source, operation: &Operation) -> Result<
             let planned = super::paste_operate::planned(model, words)?;
             Ok(reported("feature_paste", planned.change_set, &planned.measures, &planned.notes, source))
         }
+        Operation::Simplify(words) => {
+            let planned = words.planned(model)?;
+            Ok(reported("simplify", planned.change_set, &planned.measures, &[], source))
+        }
     }
 }
 

@@ -90,7 +90,7 @@ fn near(nearest: &Option<String>) -> String {
 pub fn resolve(job: &mut Job, folder: &Path) -> Result<(), PlanError> {
     for operation in &mut job.operation {
         let file = match operation {
-            Operation::ConstrainedScale(_) => None,
+            Operation::ConstrainedScale(_) | Operation::Simplify(_) => None,
             Operation::DetailTransfer(transfer) => transfer.source.file.as_mut(),
             Operation::FeaturePaste(paste) => paste.source.file.as_mut(),
         };
