@@ -8,6 +8,7 @@ pub mod contents;
 pub mod detail_file;
 mod detail_operate;
 pub mod failure;
+pub mod feature_file;
 pub mod file;
 mod json;
 pub mod judge;

@@ -17,6 +17,8 @@ pub(super) struct Crossed {
     pub region: [(f64, f64); 2],
 }
 
+/// Part of a period by which a cut may miss the place opposite.
+const NEARLY: f64 = 0.05;
 /// Part of a period within which two knots are one.
 const SAME_KNOT: f64 = 1e-10;
 
@@ -83,7 +85,9 @@ fn turned(
     // All turning is done along `u`.
     let swap = |s: &NurbsSurface| if k == 0 { s.clone() } else { s.swapped() };
     let upright = swap(ground.target);
-    let cut = Cut::opposite(&upright, ground.at[k])?;
+    let Some(cut) = Cut::opposite(&upright, ground.at[k])? else {
+        return turned(feature, ground, settings, rest);
+    };
     let mut at = ground.at;
     at[k] = cut.home(at[k]);
     let inner = turned(feature, &Ground { target: &swap(&cut.surface), at }, settings, rest)?;
@@ -110,18 +114,20 @@ struct Cut {
 }
 
 impl Cut {
-    /// Cuts half a period away from `middle`.
-    fn opposite(surface: &NurbsSurface, middle: f64) -> Result<Self, PasteError> {
+    /// Cuts half a period away from `middle`; `None` where it is cut already.
+    fn opposite(surface: &NurbsSurface, middle: f64) -> Result<Option<Self>, PasteError> {
         let (start, end) = surface.knots_u().domain();
         let period = end - start;
         let wanted = start + (middle + 0.5 * period - start).rem_euclid(period);
         // A knot that is there already is cut at no cost.
         let knots = surface.knots_u();
         let near = knots.distinct().0.into_iter().filter(|k| *k > start && *k < end);
-        let slack = 0.05 * period;
+        let slack = NEARLY * period;
+        if wanted - start <= slack || end - wanted <= slack {
+            return Ok(None);
+        }
         let known = near.filter(|k| (k - wanted).abs() <= slack);
         let cut = known.min_by(|a, b| (a - wanted).abs().total_cmp(&(b - wanted).abs())).unwrap_or(wanted);
-        let cut = if cut <= start || cut >= end { start + 0.5 * period } else { cut };
         let p = knots.degree();
         let lacking = p.saturating_sub(knots.multiplicity(cut));
         let opened = surface.refined_u(&vec![cut; lacking])?;
@@ -152,7 +158,7 @@ impl Cut {
         let knots = KnotVector::new(p, values)?;
         let surface = NurbsSurface::new(knots, opened.knots_v().clone(), points)
             .map_err(|_| PasteError::SingularSystem { unknowns: opened.net().len() })?;
-        Ok(Self { surface, domain: (start, end), cut })
+        Ok(Some(Self { surface, domain: (start, end), cut }))
     }
 
     fn home(&self, x: f64) -> f64 {
@@ -182,7 +188,8 @@ impl Cut {
         let seam = refined.knots_u().knots().partition_point(|k| *k < end - slack) - 1;
         let mut net = whole.net().to_vec();
         let mut mask = Mask::empty(rows, columns);
-        let all_round = PasteError::OutsideTarget { direction: "u", reach: (start, end), domain: (start, end) };
+        let all_round =
+            PasteError::OutsideTarget { direction: "u", reach: (start, end), domain: (start, end) };
         for at in changed.indices() {
             let (i, j) = (at / columns, at % columns);
             // Rows at the cut are not those of the original.

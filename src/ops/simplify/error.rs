@@ -18,7 +18,9 @@ pub enum SimplifyError {
         found: f64,
     },
     /// The bound that was kept step by step does not hold for the whole. This is our bug, caught before anything is written.
-    #[error("internal error: the simplified surface deviates by up to {bound:.3e}, and {tolerance:.3e} was kept to")]
+    #[error(
+        "internal error: the simplified surface deviates by up to {bound:.3e}, and {tolerance:.3e} was kept to"
+    )]
     BoundBroken {
         /// Certified distance.
         bound: f64,

@@ -80,7 +80,12 @@ fn one_direction(
     let p = surface.knots_u().degree();
     let exact = EXACT * surface.bounding_box().diagonal();
     let per_length = homogeneous_share(surface);
-    let mut rows = Rows { knots: surface.knots_u().knots().to_vec(), net: surface.net().to_vec(), p, columns: surface.shape().1 };
+    let mut rows = Rows {
+        knots: surface.knots_u().knots().to_vec(),
+        net: surface.net().to_vec(),
+        p,
+        columns: surface.shape().1,
+    };
     // What the spans between distinct knots have cost so far.
     let mut spent = vec![0.0; rows.knots.len()];
     let mut removed = 0;

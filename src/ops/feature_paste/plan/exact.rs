@@ -6,8 +6,9 @@
 
 use std::collections::BTreeMap;
 
+use super::hermite::followed;
 use crate::brep::{CoedgeId, FaceId, ParameterLoop, edge_range};
-use crate::geometry::nurbs::{KnotVector, NurbsCurve2, NurbsSurface};
+use crate::geometry::nurbs::{NurbsCurve2, NurbsSurface};
 use crate::geometry::{Curve, Curve2d, ParameterLine, Surface};
 use crate::math::{Point2, Vector2};
 use crate::model::Model;
@@ -20,8 +21,6 @@ const FULL: f64 = 1e-9;
 const CARRIED: (f64, f64) = (1e-6, 1e-11);
 /// Part of the file's own uncertainty that a carried curve may use up.
 const OF_UNCERTAINTY: f64 = 0.1;
-/// Times that a piece of a carried curve may be halved.
-const MAX_HALVINGS: u32 = 12;
 
 /// A surface as B-spline, and how parameters go over.
 #[derive(Debug, Clone)]
@@ -32,6 +31,12 @@ pub(super) struct Exact {
     lines: [ParameterLine; 2],
     /// Period in the file's parameters.
     periods: [Option<f64>; 2],
+}
+
+/// Tolerance of a curve that is laid onto a surface of this size, in a file of this uncertainty.
+pub(super) fn carry_tolerance(uncertainty: Option<f64>, size: f64) -> f64 {
+    let allowed = uncertainty.map_or(f64::INFINITY, |t| OF_UNCERTAINTY * t);
+    allowed.clamp(CARRIED.1 * size, CARRIED.0 * size)
 }
 
 /// Least and greatest parameters of the loops in one direction.
@@ -121,8 +126,7 @@ impl Exact {
         let brep = &model.brep;
         let Some(surface) = brep.surface_of(face).read() else { return (BTreeMap::new(), 0.0) };
         let size = self.surface.bounding_box().diagonal();
-        let allowed = model.context_of(face).uncertainty.map_or(f64::INFINITY, |t| OF_UNCERTAINTY * t.0);
-        let tolerance = allowed.clamp(CARRIED.1 * size, CARRIED.0 * size);
+        let tolerance = carry_tolerance(model.context_of(face).uncertainty.map(|t| t.0), size);
         let mut worst = 0.0_f64;
         let mut carried = BTreeMap::new();
         for coedge in brep.coedges_of(face) {
@@ -167,20 +171,16 @@ impl Carrying<'_> {
         if let Some(line) = self.line() {
             return (line, 0.0);
         }
-        let (mut breaks, mut worst) = (vec![range.0], 0.0_f64);
-        let mut open = vec![(range.1, 0)];
-        while let Some((end, halvings)) = open.pop() {
-            let start = breaks[breaks.len() - 1];
-            let off = self.off(start, end);
-            if off > self.tolerance && halvings < MAX_HALVINGS {
-                open.push((end, halvings + 1));
-                open.push((0.5 * (start + end), halvings + 1));
-            } else {
-                worst = worst.max(off);
-                breaks.push(end);
-            }
-        }
-        (self.spline(&breaks).unwrap_or_else(|| self.pcurve.clone()), worst)
+        let off = |p: [f64; 2], t: f64| {
+            let old = self.pcurve.point_at(t);
+            (self.exact.surface.point(p[0], p[1]) - self.surface.point(old.x, old.y)).norm()
+        };
+        let cubic = followed(&[range.0, range.1], &|t| self.at(t), &off, self.tolerance);
+        let spline = cubic.and_then(|cubic| {
+            let net = cubic.points.iter().map(|p| [p[0], p[1], 1.0]).collect();
+            Some((NurbsCurve2::new(cubic.knots, net).ok()?, cubic.error))
+        });
+        spline.map_or_else(|| (self.pcurve.clone(), f64::INFINITY), |(s, off)| (Curve2d::Nurbs(s), off))
     }
 
     /// A line stays one where it keeps one parameter, and the other is the same on both surfaces.
@@ -195,47 +195,11 @@ impl Carrying<'_> {
     }
 
     /// Point and derivative of the carried curve.
-    fn at(&self, t: f64) -> (Point2<f64>, Vector2<f64>) {
+    fn at(&self, t: f64) -> ([f64; 2], [f64; 2]) {
         let [point, slope, _] = self.pcurve.derivatives(t);
         let from = [point.x + self.shift[0], point.y + self.shift[1]];
         let (to, stretch) = (self.exact.image(from), self.exact.slope(from));
-        (Point2::new(to[0], to[1]), Vector2::new(slope.x * stretch[0], slope.y * stretch[1]))
-    }
-
-    /// Inner points of the cubic with the ends and end tangents of a piece.
-    fn inner(&self, start: f64, end: f64) -> [Point2<f64>; 4] {
-        let ((a, da), (b, db)) = (self.at(start), self.at(end));
-        let third = (end - start) / 3.0;
-        [a, a + da * third, b - db * third, b]
-    }
-
-    /// Greatest distance in space between the cubic of a piece and the curve.
-    fn off(&self, start: f64, end: f64) -> f64 {
-        let net = self.inner(start, end);
-        let mut worst = 0.0_f64;
-        for s in [0.25, 0.5, 0.75_f64] {
-            let r = 1.0 - s;
-            let weights = [r * r * r, 3.0 * r * r * s, 3.0 * r * s * s, s * s * s];
-            let cubic = net.iter().zip(weights).fold(Vector2::zeros(), |sum, (p, w)| sum + p.coords * w);
-            let at = self.pcurve.point_at(start + s * (end - start));
-            let point = self.surface.point(at.x, at.y);
-            worst = worst.max((self.exact.surface.point(cubic.x, cubic.y) - point).norm());
-        }
-        worst
-    }
-
-    fn spline(&self, breaks: &[f64]) -> Option<Curve2d> {
-        let last = breaks.len() - 1;
-        let counts: Vec<usize> = (0..=last).map(|k| if k == 0 || k == last { 4 } else { 2 }).collect();
-        let knots = KnotVector::from_multiplicities(3, breaks, &counts).ok()?;
-        let mut net = vec![self.at(breaks[0]).0];
-        for pair in breaks.windows(2) {
-            let [_, b, c, _] = self.inner(pair[0], pair[1]);
-            net.extend([b, c]);
-        }
-        net.push(self.at(breaks[last]).0);
-        let net = net.into_iter().map(|p| [p.x, p.y, 1.0]).collect();
-        NurbsCurve2::new(knots, net).ok().map(Curve2d::Nurbs)
+        (to, [slope.x * stretch[0], slope.y * stretch[1]])
     }
 }
 

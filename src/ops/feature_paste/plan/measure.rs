@@ -17,6 +17,10 @@ pub struct Measures {
     pub converted: Option<String>,
     /// Greatest distance in space by which its new curves in parameters miss the old ones.
     pub pcurve_error: Option<f64>,
+    /// Holes of the feature that became bounds of the face.
+    pub holes: usize,
+    /// Greatest distance of their curves from the surface.
+    pub hole_error: Option<f64>,
     /// Whether the seam along `u`, and along `v`, moved with the feature.
     pub seam_moved: [bool; 2],
     /// One for each place, in order.

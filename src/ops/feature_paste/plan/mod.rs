@@ -4,22 +4,28 @@
 //! the paste is refused. Pure: no I/O. All or nothing.
 
 mod exact;
+mod hermite;
+mod holes;
 mod measure;
 mod source;
 mod target;
 
+pub use holes::Hole;
 pub use measure::{Measures, PlaceMeasures};
+pub use source::{Extracted, extract};
 
 use super::across_seam::paste_across;
 use super::settings::{Existing, Mirror, Pasted, Settings};
 use super::{Feature, Ground, PasteError, contour::Plane};
-use crate::brep::FaceId;
+use crate::brep::{BodyKind, FaceId};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::geometry::nurbs::NurbsSurface;
 use crate::math::{Affine, Matrix3, Point3, Vector3};
-use crate::model::{ChangeSet, Model};
+use crate::model::Model;
+use crate::model::change_set::NewBound;
 use crate::ops::OperationError;
 use crate::ops::net::Mask;
+use crate::ops::net::layout::face_name;
 
 /// What holds the feature on the source face. Lengths are in the source's units.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,9 +40,19 @@ pub enum Region {
     Contour(Vec<Point3<f64>>, Option<Plane>),
 }
 
+/// What becomes of loops of the source inside the region.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Holes {
+    /// The surface is pasted across them.
+    #[default]
+    Close,
+    /// The target gets them too.
+    Carry,
+}
+
 /// The feature's face.
 #[derive(Debug, Clone)]
-pub struct Source<'a> {
+pub struct FaceSource<'a> {
     /// Model that the face is in.
     pub model: &'a Model,
     /// The face.
@@ -76,7 +92,7 @@ pub enum TargetLoops {
 #[derive(Debug, Clone)]
 pub struct Params<'a> {
     /// Where the feature comes from.
-    pub source: Source<'a>,
+    pub source: &'a Extracted,
     /// The face that takes it.
     pub target: FaceId,
     /// Where it goes; each place has its own angle, mirror and scale, those of `settings` are not read.
@@ -87,13 +103,15 @@ pub struct Params<'a> {
     pub tolerance: Option<f64>,
     /// Loops of the target in the way.
     pub loops: TargetLoops,
+    /// Loops of the source inside the region.
+    pub holes: Holes,
 }
 
 /// What is to be done, and what is known about it beforehand.
 #[derive(Debug, Clone)]
 pub struct Plan {
     /// New geometry.
-    pub change_set: ChangeSet,
+    pub change_set: crate::model::ChangeSet,
     /// Figures for the report.
     pub measures: Measures,
     /// Facts worth telling.
@@ -113,8 +131,19 @@ const LOST: f64 = 1e-6;
 pub fn plan(model: &Model, params: &Params<'_>) -> Result<Plan, OperationError> {
     let target = target::Target::of(model, params.target)?;
     let sense = target::natural_sense(model, params.target);
-    let source = source::Prepared::of(&params.source, model.context_of(params.target), sense)?;
-    let mut notes = source.notes.clone();
+    let source = source::Prepared::of(params.source, model.context_of(params.target), sense)?;
+    let mut notes = Vec::new();
+    let carries = params.holes == Holes::Carry && !source.holes.is_empty();
+    if carries && opens_solid(model, params.target) {
+        return Err(PasteError::HoleOpensSolid { face: face_name(model, params.target) }.into());
+    }
+    if !carries && !source.holes.is_empty() {
+        let count = source.holes.len();
+        let message =
+            format!("{count} holes of the feature are not carried: the surface is pasted across them");
+        notes.push(note("paste.holes-closed", Severity::Warning, message));
+    }
+    let mut holes: Vec<Hole> = Vec::new();
     let mut surface = target.surface.clone();
     let mut places: Vec<PlaceMeasures> = Vec::new();
     let mut regions: Vec<[(f64, f64); 2]> = Vec::new();
@@ -136,6 +165,11 @@ pub fn plan(model: &Model, params: &Params<'_>) -> Result<Plan, OperationError> 
         for (k, moved) in seam_moved.iter_mut().enumerate() {
             *moved |= on_seam(&one.pasted.changed, k);
         }
+        if carries {
+            for hole in &source.holes {
+                holes.push(holes::carried(hole, &one.pasted.map, &one.pasted.surface, target.round)?);
+            }
+        }
         places.push(measure::measure(place, &one.pasted, one.region, one.cut));
         surface = one.pasted.surface;
     }
@@ -146,15 +180,48 @@ pub fn plan(model: &Model, params: &Params<'_>) -> Result<Plan, OperationError> 
         );
         notes.push(note("paste.region-reduced", Severity::Warning, message));
     }
-    let measures = Measures {
+    let mut measures = Measures {
         face: model.origins.faces[params.target].to_string(),
         control_points: [before, surface.net().len()],
+        holes: holes.len(),
+        hole_error: None,
         converted: target.converted.map(str::to_owned),
         pcurve_error: target.converted.map(|_| target.pcurve_error),
         seam_moved,
         places,
     };
-    Ok(Plan { change_set: target.changes(model, params.target, surface, seam_moved), measures, notes })
+    let bounds = new_bounds(model, params.target, &surface, &holes, &mut measures)?;
+    let mut change_set = target.changes(model, params.target, surface, seam_moved);
+    if !bounds.is_empty() {
+        change_set.bounds.insert(params.target, bounds);
+    }
+    Ok(Plan { change_set, measures, notes })
+}
+
+/// The carried holes as bounds of the target on its finished surface.
+fn new_bounds(
+    model: &Model,
+    face: FaceId,
+    surface: &NurbsSurface,
+    holes: &[Hole],
+    measures: &mut Measures,
+) -> Result<Vec<NewBound>, OperationError> {
+    let uncertainty = model.context_of(face).uncertainty.map(|t| t.0);
+    let tolerance = exact::carry_tolerance(uncertainty, surface.bounding_box().diagonal());
+    let sense = model.brep.faces[face].same_sense;
+    let mut bounds = Vec::new();
+    for hole in holes {
+        let (bound, error) = holes::bound(hole, surface, sense, tolerance)?;
+        measures.hole_error = Some(measures.hole_error.unwrap_or(0.0).max(error));
+        bounds.push(bound);
+    }
+    Ok(bounds)
+}
+
+/// Whether a hole in the face would open a closed shell.
+fn opens_solid(model: &Model, face: FaceId) -> bool {
+    let shell = &model.brep.shells[model.brep.faces[face].shell];
+    shell.closed || model.brep.bodies[shell.body].kind == BodyKind::Solid
 }
 
 /// One place done.
@@ -198,7 +265,11 @@ fn pasted_at(
 /// Whether a set has a place on the first line of a direction.
 fn on_seam(changed: &Mask, k: usize) -> bool {
     let (rows, columns) = changed.shape();
-    if k == 0 { (0..columns).any(|j| changed.contains(0, j)) } else { (0..rows).any(|i| changed.contains(i, 0)) }
+    if k == 0 {
+        (0..columns).any(|j| changed.contains(0, j))
+    } else {
+        (0..rows).any(|i| changed.contains(i, 0))
+    }
 }
 
 fn note(code: &'static str, severity: Severity, message: String) -> Diagnostic {

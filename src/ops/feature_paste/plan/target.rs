@@ -122,6 +122,21 @@ impl Target {
                 changes.pcurves.insert(seam.coedge, pcurve);
             }
         }
+        // Where two seams cross, their vertex goes with them.
+        if seam_moved == [true; 2] {
+            let ((u, _), (v, _)) = surface.domain();
+            let (old, new) = (self.surface.point(u, v), surface.point(u, v));
+            let slack = MEETS * surface.bounding_box().diagonal();
+            for seam in &self.seams {
+                let edge = &model.brep.edges[model.brep.coedges[seam.coedge].edge];
+                for vertex in [edge.start, edge.end] {
+                    let there = (model.brep.vertices[vertex].point - old).norm() <= slack;
+                    if there && new != old {
+                        changes.points.insert(vertex, new);
+                    }
+                }
+            }
+        }
         changes.surfaces.insert(face, Surface::Nurbs(surface));
         changes
     }
@@ -213,10 +228,7 @@ const MEETS: f64 = 1e-7;
 fn closed_directions(surface: &NurbsSurface) -> [Option<f64>; 2] {
     let tolerance = MEETS * surface.bounding_box().diagonal();
     let ((u0, u1), (v0, v1)) = surface.domain();
-    [
-        surface.is_closed_u(tolerance).then_some(u1 - u0),
-        surface.is_closed_v(tolerance).then_some(v1 - v0),
-    ]
+    [surface.is_closed_u(tolerance).then_some(u1 - u0), surface.is_closed_v(tolerance).then_some(v1 - v0)]
 }
 
 /// Whole periods that bring the middle of a polygon into the domain.
@@ -250,7 +262,8 @@ fn copies(side: Side, periods: [Option<f64>; 2], domain: [(f64, f64); 2]) -> Vec
             b[k] += way;
             clipped((a, b), k, domain[k])
         };
-        found = found.iter().flat_map(|s| [-period, 0.0, period].map(|way| moved(s, way))).flatten().collect();
+        found =
+            found.iter().flat_map(|s| [-period, 0.0, period].map(|way| moved(s, way))).flatten().collect();
     }
     found
 }
@@ -317,7 +330,13 @@ fn seams(
                 let range = (0..along.len())
                     .map(other)
                     .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
-                found.push(SeamUse { coedge: run[0].coedge, closed: k, at_end: on(high), along: range, forward });
+                found.push(SeamUse {
+                    coedge: run[0].coedge,
+                    closed: k,
+                    at_end: on(high),
+                    along: range,
+                    forward,
+                });
             }
         }
     }
