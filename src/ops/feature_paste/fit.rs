@@ -356,7 +356,7 @@ impl<'a> System<'a> {
         {
             let mut local: Vec<f64> = Vec::new();
             let mut places: Vec<usize> = Vec::new();
-            for sample in of_cell {
+            for sample in of_cell.iter().filter(|sample| sample.weight > 0.0) {
                 self.entries(sample, &mut entries);
                 if local.is_empty() {
                     places = entries.iter().map(|e| e.0).collect();
@@ -398,13 +398,17 @@ impl<'a> System<'a> {
     }
 }
 
-/// For each cell of one direction its Gauss points: basis, weight and parameter.
+/// Places of a cell, from -1 to 1, between the Gauss points and its ends, at which a fit is compared too.
+const BETWEEN: [f64; 4] = [-0.97, -0.6, 0.6, 0.97];
+
+/// For each cell of one direction its Gauss points: basis, weight and parameter; and, with weight 0, places between.
 fn gauss_lines(knots: &KnotVector) -> Vec<Vec<(LocalBasis, f64, f64)>> {
     let (nodes, weights) = gauss_legendre(knots.degree() + 1);
     let (distinct, _) = knots.distinct();
     let of_cell = |w: &[f64]| {
         let (half, middle) = (0.5 * (w[1] - w[0]), 0.5 * (w[0] + w[1]));
-        let points = nodes.iter().zip(&weights);
+        let between = BETWEEN.iter().map(|x| (x, &0.0));
+        let points = nodes.iter().zip(&weights).chain(between);
         points
             .map(|(x, weight)| {
                 let at = middle + half * x;

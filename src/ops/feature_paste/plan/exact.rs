@@ -85,6 +85,27 @@ fn range(surface: &Surface, loops: &[ParameterLoop], k: usize) -> Option<(f64, f
     Some((wide.0.max(domain.0), wide.1.min(domain.1)))
 }
 
+/// Whether a range goes all round.
+fn goes_round(surface: &Surface, range: (f64, f64), k: usize) -> bool {
+    let periods = surface.periods();
+    let period = if k == 0 { periods.0 } else { periods.1 };
+    period.is_some_and(|p| range.1 - range.0 >= (1.0 - FULL) * p)
+}
+
+/// A surface that goes all round along `u` ends on the very points where it starts: sine and cosine of a full turn
+/// are those of none but for rounding.
+fn shut(surface: &NurbsSurface, full: bool) -> NurbsSurface {
+    if !full {
+        return surface.clone();
+    }
+    let columns = surface.shape().1;
+    let mut net = surface.net().to_vec();
+    let last = net.len() - columns;
+    net.copy_within(..columns, last);
+    NurbsSurface::new(surface.knots_u().clone(), surface.knots_v().clone(), net)
+        .unwrap_or_else(|_| surface.clone())
+}
+
 fn apex(surface: &Surface) -> Option<f64> {
     match surface {
         Surface::Cone { radius, semi_angle, .. } => Some(-radius / semi_angle.tan()),
@@ -102,6 +123,8 @@ impl Exact {
         let u = range(surface, loops, 0).ok_or_else(endless)?;
         let v = range(surface, loops, 1).ok_or_else(endless)?;
         let spline = surface.to_nurbs(u, v).map_err(|e| e.to_string())?;
+        let spline =
+            shut(&shut(&spline, goes_round(surface, u, 0)).swapped(), goes_round(surface, v, 1)).swapped();
         let none = || format!("a {} has no exact form as a rational B-spline", surface.kind());
         let lines = ParameterLine::of_surface(surface, u, v).ok_or_else(none)?;
         let (pu, pv) = surface.periods();
