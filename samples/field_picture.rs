@@ -65,7 +65,7 @@ fn against(old: &Surface, locator: Option<&SurfaceLocator<'_>>, point: &Point3<f
         },
     );
     let at = old.derivatives(u, v);
-    let way = point.coords - at.point;
+    let way = point - at.point;
     let mean = at.curvatures().map_or(0.0, |(_, mean)| mean);
     (mean, at.normal().map_or(0.0, |normal| normal.dot(&way)))
 }
@@ -80,12 +80,16 @@ fn full(values: &[&[f64]]) -> f64 {
 }
 
 fn draw(arguments: &[String]) -> Result<(), String> {
-    let [out, before, after] = arguments else { return Err("expected OUT.png BEFORE.step AFTER.step".to_owned()) };
+    let [out, before, after] = arguments else {
+        return Err("expected OUT.png BEFORE.step AFTER.step".to_owned());
+    };
     let (before, after) = (model(before)?, model(after)?);
     let changed = before.brep.faces.ids().find_map(|face| {
         let (old, new) = (before.brep.surface_of(face), after.brep.surface_of(face));
         match (old, new) {
-            (Carried::Read(old), Carried::Read(Surface::Nurbs(new))) if old != &Surface::Nurbs(new.clone()) => {
+            (Carried::Read(old), Carried::Read(Surface::Nurbs(new)))
+                if old != &Surface::Nurbs(new.clone()) =>
+            {
                 Some((old, new))
             }
             _ => None,
@@ -101,8 +105,10 @@ fn draw(arguments: &[String]) -> Result<(), String> {
         mesh.vertices.iter().map(|point| against(old, locator.as_ref(), point)).collect();
     let flat = compared.iter().map(|c| c.0).collect::<Vec<f64>>();
     let deviation = compared.iter().map(|c| c.1).collect::<Vec<f64>>();
-    let bent: Vec<f64> =
-        places.iter().map(|[u, v]| new.derivatives(*u, *v).curvatures().map_or(0.0, |(_, mean)| mean)).collect();
+    let bent: Vec<f64> = places
+        .iter()
+        .map(|[u, v]| new.derivatives(*u, *v).curvatures().map_or(0.0, |(_, mean)| mean))
+        .collect();
     let curvature = full(&[&flat, &bent]);
     let views = [(&flat, curvature), (&bent, curvature), (&deviation, full(&[&deviation]))]
         .map(|(values, full)| FieldView { mesh: &mesh, values, full });

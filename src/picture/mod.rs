@@ -159,8 +159,7 @@ impl Canvas {
         if !(1..=LONGEST_SIDE).contains(&width) || !(1..=LONGEST_SIDE).contains(&height) {
             return Err(PictureError::Size { width, height });
         }
-        let mut pixmap =
-            tiny_skia::Pixmap::new(width, height).ok_or(PictureError::Size { width, height })?;
+        let mut pixmap = tiny_skia::Pixmap::new(width, height).ok_or(PictureError::Size { width, height })?;
         pixmap.fill(tiny_skia::Color::WHITE);
         Ok(Self { camera, layout, pixmap })
     }

@@ -110,8 +110,8 @@ fn the_same_views_give_the_same_bytes() {
 fn a_field_is_blue_below_zero_red_above_and_grey_between() {
     let flat = sheet(40, |_| (0.0, 0.0));
     let values: Vec<f64> = flat.vertices.iter().map(|p| 2.0 * p.x).collect();
-    let picture =
-        field(&[FieldView { mesh: &flat, values: &values, full: 1.0 }], &from_above(300, 10.0)).expect("a picture");
+    let picture = field(&[FieldView { mesh: &flat, values: &values, full: 1.0 }], &from_above(300, 10.0))
+        .expect("a picture");
     let pixmap = pixels(&picture);
     let row = pixmap.height() / 2;
     let colour = |x: u32| pixmap.pixel(x, row).map(|p| (p.red(), p.blue())).expect("inside");
