@@ -19,6 +19,7 @@ pub mod prepare;
 pub mod settings;
 pub mod spline;
 mod transfer;
+mod weighted;
 
 pub use error::TransferError;
 pub use plan::{Params, Plan, plan};

@@ -8,6 +8,7 @@ use super::prepare::{Prepared, prepare};
 use super::settings::Settings;
 use super::spline::Spline;
 use super::transfer::transfer;
+use super::weighted;
 use crate::brep::CurveId;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::geometry::{Carried, Curve};
@@ -95,7 +96,13 @@ pub fn plan(model: &Model, params: &Params<'_>) -> Result<Plan, OperationError> 
     refuse_edges(model, params.target)?;
     let name = |model: &Model, curve| model.origins.curves[curve].to_string();
     let (target_name, source_name) = (name(model, params.target), name(params.source_model, params.source));
-    let target = prepared(read(model, params.target, &target_name)?, &target_name, params.tolerance)?;
+    let target = read(model, params.target, &target_name)?;
+    // Frames and lengths are taken from a spline without weights, which runs as the exact form does.
+    let rational = weighted::rational_form(target);
+    let target = match &rational {
+        Some(exact) => prepared(&Curve::Nurbs(exact.clone()), &target_name, params.tolerance)?,
+        None => prepared(target, &target_name, params.tolerance)?,
+    };
     let scaled;
     let curve = read(params.source_model, params.source, &source_name)?;
     let curve = if params.source_unit.to_bits() == 1.0f64.to_bits() {
@@ -111,9 +118,16 @@ pub fn plan(model: &Model, params: &Params<'_>) -> Result<Plan, OperationError> 
     let settings = completed(params, &source.spline, &target.spline)?;
     let named = |error| in_file(error, &source_name, &target_name);
     let made = transfer(&target.spline, &source.spline, &settings).map_err(named)?;
+    let exact = match &rational {
+        Some(exact) => weighted::sum(exact, &made.detail)?,
+        None => None,
+    };
+    let is_exact = exact.is_some();
+    let new = exact.or_else(|| made.curve.to_nurbs()).ok_or(TransferError::NotFinite)?;
     let extent = extent(&made);
     let (start, end) = target.spline.domain();
     let interval = settings.interval.unwrap_or((start, end));
+    let before = rational.as_ref().map_or(&target.spline.knots, |exact| exact.knots());
     let measures = Measures {
         levels_available: made.levels_available,
         levels: made.levels.clone(),
@@ -124,17 +138,16 @@ pub fn plan(model: &Model, params: &Params<'_>) -> Result<Plan, OperationError> 
         detail_times_curvature: extent.fold,
         end_shift: extent.ends,
         length: [&target.spline, &made.curve].map(|curve| curve.length(start, end)),
-        degree: [&target.spline, &made.curve].map(|curve| curve.knots.degree()),
-        control_points: [&target.spline, &made.curve].map(|curve| curve.points.len()),
+        degree: [before.degree(), new.knots().degree()],
+        control_points: [before.n_basis(), new.points().len()],
         source_deviation: source.deviation,
-        target_deviation: target.deviation,
+        target_deviation: if is_exact { 0.0 } else { target.deviation },
         target: target_name.clone(),
     };
     let notes = notes(&measures, &target_name);
     let mut change_set = ChangeSet::default();
     let still = made.detail.points.iter().flatten().all(|c| *c == 0.0);
     if !still {
-        let new = made.curve.to_nurbs().ok_or(TransferError::NotFinite)?;
         change_set.free_curves.insert(params.target, Curve::Nurbs(new));
     }
     Ok(Plan { change_set, measures, notes })
@@ -221,7 +234,7 @@ fn notes(measures: &Measures, target: &str) -> Vec<Diagnostic> {
     }
     if measures.target_deviation > 0.0 {
         let message = format!(
-            "the curve has no exact form without weights; a cubic stands for it, at most {:.3e} away",
+            "the curve has no exact form; a cubic stands for it, at most {:.3e} away",
             measures.target_deviation
         );
         notes.push(note("detail.approximated", Severity::Note, message));
