@@ -45,8 +45,16 @@ pub(super) fn mended(refined: &NurbsSurface, surface: &NurbsSurface, changed: &M
         for fold in folds.iter().filter(|f| f.line + 1 < count) {
             for m in 0..across {
                 let at = fold.line * step + if k == 0 { m } else { m * columns };
+                let three = [at - step, at, at + step];
+                if !goes_straight(old, &net, three, fold.shares) {
+                    continue;
+                }
                 if changed.contains_index(at) {
-                    mend(old, &mut net, [at - step, at, at + step], fold.shares);
+                    mend(old, &mut net, three, fold.shares);
+                } else {
+                    // The line itself stays: what moved beside it would fold the surface.
+                    net[three[0]] = old[three[0]];
+                    net[three[2]] = old[three[2]];
                 }
             }
         }
@@ -54,23 +62,34 @@ pub(super) fn mended(refined: &NurbsSurface, surface: &NurbsSurface, changed: &M
     net
 }
 
-fn mend(old: &[[f64; 4]], net: &mut [[f64; 4]], [a, at, b]: [usize; 3], shares: [f64; 2]) {
+fn coordinate(net: &[[f64; 4]], k: usize, c: usize) -> f64 {
+    net[k][c] / net[k][3]
+}
+
+/// The place between two neighbours where the tangents of both sides meet.
+fn between(old: &[[f64; 4]], [a, b]: [usize; 2], shares: [f64; 2]) -> impl Fn(f64, f64) -> f64 {
+    let (left, right) = (shares[0] * old[a][3], shares[1] * old[b][3]);
+    move |x, y| (left * x + right * y) / (left + right)
+}
+
+/// Whether the target has no crease there, and its weights are those of the result.
+fn goes_straight(old: &[[f64; 4]], net: &[[f64; 4]], [a, at, b]: [usize; 3], shares: [f64; 2]) -> bool {
     let kept = |k: usize| (net[k][3] - old[k][3]).abs() <= SAME_WEIGHT * old[k][3];
     if ![a, at, b].into_iter().all(kept) {
-        return;
+        return false;
     }
-    let (left, right) = (shares[0] * old[a][3], shares[1] * old[b][3]);
-    let between = |x: f64, y: f64| (left * x + right * y) / (left + right);
-    let coordinate = |net: &[[f64; 4]], k: usize, c: usize| net[k][c] / net[k][3];
+    let between = between(old, [a, b], shares);
     let (mut off, mut wide) = (0.0, 0.0);
     for c in 0..3 {
         let [x, m, y] = [a, at, b].map(|k| coordinate(old, k, c));
         off += (m - between(x, y)).powi(2);
         wide += (y - x).powi(2);
     }
-    if off > STRAIGHT * STRAIGHT * wide {
-        return;
-    }
+    off <= STRAIGHT * STRAIGHT * wide
+}
+
+fn mend(old: &[[f64; 4]], net: &mut [[f64; 4]], [a, at, b]: [usize; 3], shares: [f64; 2]) {
+    let between = between(old, [a, b], shares);
     for c in 0..3 {
         let moved = |k: usize| coordinate(net, k, c) - coordinate(old, k, c);
         let way = between(moved(a), moved(b));

@@ -399,7 +399,7 @@ impl<'a> System<'a> {
 }
 
 /// Places of a cell, from -1 to 1, between the Gauss points and its ends, at which a fit is compared too.
-const BETWEEN: [f64; 4] = [-0.97, -0.6, 0.6, 0.97];
+const BETWEEN: [f64; 2] = [-0.97, 0.97];
 
 /// For each cell of one direction its Gauss points: basis, weight and parameter; and, with weight 0, places between.
 fn gauss_lines(knots: &KnotVector) -> Vec<Vec<(LocalBasis, f64, f64)>> {
