@@ -21,6 +21,7 @@ use crate::math::Vector3;
 use crate::model::{ChangeSet, Model};
 use crate::ops::OperationError;
 use crate::ops::net::Mask;
+use crate::ops::net::acting::{acting_on, closed_directions};
 use crate::ops::net::layout::{Layout, face_name, lay_out_on};
 
 /// A face that detail is laid over.
@@ -248,14 +249,16 @@ fn weights(
             (0..rows).for_each(|i| stay.insert(i, j));
         }
     }
-    let bounds = match direction {
-        Direction::U => layout.acting_on_bounds(refined),
-        Direction::V => layout.acting_on_bounds(&refined.swapped()),
+    let net = match direction {
+        Direction::U => refined.clone(),
+        Direction::V => refined.swapped(),
     };
-    for at in bounds.iter().flat_map(Mask::indices) {
-        match direction {
-            Direction::U => stay.insert(at / columns, at % columns),
-            Direction::V => stay.insert(at % rows, at / rows),
+    for bound in layout.loops.iter().flatten() {
+        for at in acting_on(&bound.contour, &net, closed_directions(&net)).indices() {
+            match direction {
+                Direction::U => stay.insert(at / columns, at % columns),
+                Direction::V => stay.insert(at % rows, at / rows),
+            }
         }
     }
     let mut weights = vec![1.0; rows * columns];

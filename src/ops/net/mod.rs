@@ -3,6 +3,7 @@
 //!
 //! Knows no operation.
 
+pub mod acting;
 pub mod cells;
 pub mod grams;
 pub mod layout;

@@ -13,8 +13,9 @@ use crate::geometry::{Carried, Curve2d, Surface};
 use crate::math::Frame;
 use crate::model::{ChangeSet, Model};
 use crate::ops::OperationError;
+use crate::ops::net::acting::{MEETS, ON_BORDER, acting_on, closed_directions, winding};
 use crate::ops::net::layout::{face_name, lay_out_on};
-use crate::ops::net::{CellGrid, Contour, Mask, Polygon};
+use crate::ops::net::{Contour, Mask, Polygon};
 
 /// Whether the surface's own normal is the outward one of its face.
 pub(super) fn natural_sense(model: &Model, face: FaceId) -> bool {
@@ -200,36 +201,14 @@ impl Target {
     /// For each loop the control points that act on it. Pieces on the border of the domain do not count: there only
     /// the outermost rows act, which stay anyway.
     pub fn acting_on_loops(&self, refined: &NurbsSurface) -> Vec<(String, Mask)> {
-        let grid = CellGrid::new(refined.knots_u(), refined.knots_v());
-        let (u, v) = refined.domain();
-        let border = [u, v];
         let periods = closed_directions(&self.surface);
-        let one = |bound: &Bound| {
-            let contour = &bound.contour;
-            let mut points = contour.points.clone();
-            points.extend(points.first().map(|p| [p[0] + bound.winding[0], p[1] + bound.winding[1]]));
-            let sides = points.windows(2).map(|w| (w[0], w[1]));
-            let inner = sides
-                .flat_map(|side| copies(side, periods, border))
-                .filter(|(a, b)| !on_border(*a, *b, border, contour.margin));
-            let cells = grid.met_by_sides(inner, contour.margin);
-            (bound.name.clone(), grid.control_points(&cells))
-        };
+        let one = |bound: &Bound| (bound.name.clone(), acting_on(&bound.contour, refined, periods));
         self.loops.iter().map(one).collect()
     }
 }
 
 /// By how much a parameter of an exact surface is stretched at most: 1.11 for a quarter turn.
 const STRETCH: f64 = 1.2;
-/// Distance of opposite borders that meet, as a part of the surface's size.
-const MEETS: f64 = 1e-7;
-
-/// Periods of a surface that closes on itself.
-fn closed_directions(surface: &NurbsSurface) -> [Option<f64>; 2] {
-    let tolerance = MEETS * surface.bounding_box().diagonal();
-    let ((u0, u1), (v0, v1)) = surface.domain();
-    [surface.is_closed_u(tolerance).then_some(u1 - u0), surface.is_closed_v(tolerance).then_some(v1 - v0)]
-}
 
 /// Whole periods that bring the middle of a polygon into the domain.
 fn home(points: &[[f64; 2]], periods: [Option<f64>; 2], domain: [(f64, f64); 2]) -> [f64; 2] {
@@ -242,51 +221,6 @@ fn home(points: &[[f64; 2]], periods: [Option<f64>; 2], domain: [(f64, f64); 2])
         let away = (centre - 0.5 * (low + high)) / period;
         if away.abs() > 0.5 + MEETS { period * away.round() } else { 0.0 }
     })
-}
-
-fn winding(contour: &Contour, periods: [Option<f64>; 2]) -> [f64; 2] {
-    let (Some(first), Some(last)) = (contour.points.first(), contour.points.last()) else { return [0.0; 2] };
-    [0, 1].map(|k| periods[k].map_or(0.0, |p| p * ((last[k] - first[k]) / p).round()))
-}
-
-type Side = ([f64; 2], [f64; 2]);
-
-/// The parts of a side, moved by whole periods, that lie within the domain.
-fn copies(side: Side, periods: [Option<f64>; 2], domain: [(f64, f64); 2]) -> Vec<Side> {
-    let mut found = vec![side];
-    for (k, period) in periods.into_iter().enumerate() {
-        let Some(period) = period else { continue };
-        let moved = |&(a, b): &Side, way: f64| {
-            let (mut a, mut b) = (a, b);
-            a[k] += way;
-            b[k] += way;
-            clipped((a, b), k, domain[k])
-        };
-        found =
-            found.iter().flat_map(|s| [-period, 0.0, period].map(|way| moved(s, way))).flatten().collect();
-    }
-    found
-}
-
-/// The part of a side between two lines of one coordinate.
-fn clipped((a, b): Side, k: usize, (low, high): (f64, f64)) -> Option<Side> {
-    let slack = ON_BORDER * (high - low);
-    let (low, high) = (low - slack, high + slack);
-    if a[k].max(b[k]) < low || a[k].min(b[k]) > high {
-        return None;
-    }
-    let way = b[k] - a[k];
-    let cut = |at: [f64; 2]| {
-        let to = at[k].clamp(low, high);
-        if to == at[k] {
-            return at;
-        }
-        let share = (to - a[k]) / way;
-        let mut on = [0, 1].map(|m| a[m] + share * (b[m] - a[m]));
-        on[k] = to;
-        on
-    };
-    Some((cut(a), cut(b)))
 }
 
 /// Uses of edges that lie on a border where the surface meets itself.
@@ -346,16 +280,6 @@ fn seams(
 
 /// A place farther from the surface than this part of its size is a mistake, not a point beside it.
 const FAR: f64 = 0.05;
-/// Part of the domain within which a side lies on its border.
-const ON_BORDER: f64 = 1e-7;
-
-fn on_border(a: [f64; 2], b: [f64; 2], border: [(f64, f64); 2], margin: [f64; 2]) -> bool {
-    (0..2).any(|k| {
-        let slack = (ON_BORDER * (border[k].1 - border[k].0)).max(margin[k]);
-        [border[k].0, border[k].1].iter().any(|x| (a[k] - x).abs() <= slack && (b[k] - x).abs() <= slack)
-    })
-}
-
 fn unfit(face: String, kind: &str) -> PasteError {
     let expected = "a feature goes onto a B-spline, a plane, a cylinder, a cone, a sphere, a torus, or a surface of extrusion or revolution";
     PasteError::SurfaceKind { side: "target", face, kind: kind.to_owned(), expected }
