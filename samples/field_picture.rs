@@ -2,7 +2,7 @@
 //! curvature after, and the deviation of the one from the other.
 //!
 //! `cargo run --release --example make-field-picture -- OUT.png BEFORE.step AFTER.step`. The surface is drawn, not only the
-//! face on it. `docs/paste-fields.png` is the wheel of `samples/wheel`.
+//! face on it.
 
 use std::process::ExitCode;
 
