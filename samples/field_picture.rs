@@ -2,7 +2,7 @@
 //! curvature after, and the deviation of the one from the other.
 //!
 //! `cargo run --release --example make-field-picture -- OUT.png BEFORE.step AFTER.step`. The surface is drawn, not only the
-//! face on it. `docs/paste-fields.png` is the wheel of `samples/wheel`.
+//! face on it.
 
 use std::process::ExitCode;
 
@@ -16,7 +16,7 @@ use resurf::model::Model;
 use resurf::picture::{FieldView, PictureOptions, field};
 
 /// Steps along each parameter.
-const STEPS: u32 = 360;
+const STEPS: u32 = 240;
 /// Part of the samples that may be beyond the full colour: peaks would leave the rest pale.
 const BEYOND: f64 = 0.01;
 
@@ -56,9 +56,15 @@ fn grid(surface: &NurbsSurface) -> (Mesh, Vec<[f64; 2]>) {
 }
 
 /// Mean curvature of the old surface at the foot of a point, and the signed distance from it.
-fn against(old: &Surface, locator: Option<&SurfaceLocator<'_>>, point: &Point3<f64>) -> (f64, f64) {
+fn against(
+    old: &Surface,
+    locator: Option<&SurfaceLocator<'_>>,
+    point: &Point3<f64>,
+    near: [f64; 2],
+) -> (f64, f64) {
     let (u, v) = locator.map_or_else(
-        || old.parameters_of(point, None),
+        // Both count alike but for the inside of a quarter turn.
+        || old.parameters_of(point, Some((near[0], near[1]))),
         |locator| {
             let found = locator.closest(point);
             (found.u, found.v)
@@ -102,7 +108,7 @@ fn draw(arguments: &[String]) -> Result<(), String> {
         _ => None,
     };
     let compared: Vec<(f64, f64)> =
-        mesh.vertices.iter().map(|point| against(old, locator.as_ref(), point)).collect();
+        mesh.vertices.iter().zip(&places).map(|(p, at)| against(old, locator.as_ref(), p, *at)).collect();
     let flat = compared.iter().map(|c| c.0).collect::<Vec<f64>>();
     let deviation = compared.iter().map(|c| c.1).collect::<Vec<f64>>();
     let bent: Vec<f64> = places

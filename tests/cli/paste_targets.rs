@@ -218,7 +218,7 @@ const HOLE: &str = "source = { file = \"door.step\", region = { polygon = [[0.05
 
 #[test]
 fn a_hole_of_the_feature_becomes_one_of_the_sheet() {
-    for turn in ["", "rotate = \"30 deg\"\nmirror = \"u\"\ntolerance = 0.05\n"] {
+    for turn in ["", "rotate = \"30 deg\"\nmirror = \"u\"\ntolerance = 0.3\n"] {
         let operation = format!("{HOLE}{turn}target = {{ at = [0, 800, 100] }}");
         let fixture = Fixture::new()
             .sample("door/door.step")

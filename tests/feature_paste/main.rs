@@ -6,7 +6,6 @@ mod errors;
 mod fairness;
 mod invariants;
 mod parts;
-mod sweep;
 mod vectors;
 
 #[path = "../support/nets.rs"]

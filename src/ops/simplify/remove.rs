@@ -89,8 +89,7 @@ fn one_direction(
     // What the spans between distinct knots have cost so far.
     let mut spent = vec![0.0; rows.knots.len()];
     let mut removed = 0;
-    loop {
-        let Ok(knots) = KnotVector::new(p, rows.knots.clone()) else { break };
+    while let Ok(knots) = KnotVector::new(p, rows.knots.clone()) {
         let mask = match axis {
             Axis::U => held.control_points(&knots, surface.knots_v()),
             Axis::V => held.control_points(surface.knots_v(), &knots).transposed(),
