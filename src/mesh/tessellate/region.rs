@@ -245,30 +245,39 @@ impl<E: Shape> Work<'_, E> {
 
     fn add_boundary(&mut self, loops: &[Vec<Corner>]) -> Result<(), RegionError> {
         let mut pieces = Vec::new();
-        let mut known = BTreeMap::new();
+        let mut sites: Vec<Site> = Vec::new();
+        let mut known: BTreeMap<[u64; 2], usize> = BTreeMap::new();
         for corners in loops {
-            let mut handles = Vec::with_capacity(corners.len());
+            let mut places = Vec::with_capacity(corners.len());
             for corner in corners {
                 let position = self.position(corner.uv);
                 // Zero added, since -0 and 0 are one place.
                 let place = [position.x, position.y].map(|c| (c + 0.0).to_bits());
-                if let Some(&vertex) = known.get(&place) {
-                    let node = self.nodes[self.cdt.vertex(vertex).data().node as usize];
-                    if node.vertex != Some(corner.vertex) {
+                if let Some(&at) = known.get(&place) {
+                    if self.nodes[sites[at].node as usize].vertex != Some(corner.vertex) {
                         return Err(RegionError::Coincident(corner.point));
                     }
-                    handles.push(vertex);
+                    places.push(at);
                     continue;
                 }
                 let node = self.push_node(corner.uv, corner.point, Some(corner.vertex))?;
-                let vertex = self.cdt.insert(Site { position, node }).map_err(|_| RegionError::Degenerate)?;
-                known.insert(place, vertex);
-                handles.push(vertex);
+                known.insert(place, sites.len());
+                places.push(sites.len());
+                sites.push(Site { position, node });
             }
-            let ends = handles.iter().skip(1).chain(handles.first());
-            pieces.extend(handles.iter().zip(ends).map(|(&a, &b)| (a, b)));
+            let ends = places.iter().skip(1).chain(places.first());
+            pieces.extend(places.iter().zip(ends).map(|(&a, &b)| (a, b)));
         }
-        for (from, to) in pieces.into_iter().filter(|(from, to)| from != to) {
+        // All at once is much faster than one after the other round a loop.
+        let count = sites.len();
+        self.cdt = Triangulation::bulk_load(sites).map_err(|_| RegionError::Degenerate)?;
+        let mut handles: Vec<_> = self.cdt.vertices().map(|v| (v.data().node, v.fix())).collect();
+        handles.sort_unstable_by_key(|(node, _)| *node);
+        if handles.len() != count {
+            return Err(RegionError::Degenerate);
+        }
+        let pieces = pieces.into_iter().map(|(a, b)| (handles[a].1, handles[b].1));
+        for (from, to) in pieces.filter(|(from, to)| from != to) {
             let edges = self.cdt.try_add_constraint(from, to);
             if edges.is_empty() {
                 let node = self.cdt.vertex(from).data().node as usize;
