@@ -86,11 +86,11 @@ def main():
             print(f"{name:40} left out: one of the two reads or meshes no face of it")
             continue
         ours, peer = least(ours), least(peer)
-        rate = lambda made: made["faces"] / made["seconds"]
+        rate = lambda made: made["faces"] / max(made["seconds"], 1e-6)
         show = lambda made: f"{made['faces']:5} {made['triangles']:7} tri {rate(made):9.0f}/s"
         whole = lambda made: made["seconds"] + made["read"]
         print(f"{name:40} {show(ours):>28} {show(peer):>28} {rate(ours) / rate(peer):6.2f} "
-              f"{peer['read'] / ours['read']:8.2f} {whole(peer) / whole(ours):6.2f}")
+              f"{peer['read'] / max(ours['read'], 1e-6):8.2f} {whole(peer) / whole(ours):6.2f}")
         sums = [a + b for a, b in zip(sums, (ours["seconds"], peer["seconds"], ours["read"], peer["read"]))]
         for reason in ours["refused"]:
             print(f"    refused: {reason}")
