@@ -11,6 +11,7 @@
 mod assemble;
 mod boundary;
 mod edges;
+mod flat;
 mod lattice;
 mod region;
 mod untangle;

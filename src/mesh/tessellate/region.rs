@@ -5,6 +5,7 @@
 
 use super::Tolerances;
 use super::boundary::OWN;
+use super::flat::turn_flat;
 use super::lattice::{Lattice, SAMPLES};
 use crate::geometry::nurbs::SurfaceDerivatives;
 use crate::math::{Point3, Vector3};
@@ -257,7 +258,10 @@ pub(super) fn triangulate<E: Shape>(
     if !shape.is_flat() {
         work.refine(tolerances)?;
     }
-    let triangles = work.inner_triangles();
+    let mut triangles = work.inner_triangles();
+    if !shape.is_flat() {
+        turn_flat(&mut triangles, &work.nodes);
+    }
     let area = |corners: &Vec<Corner>| -> f64 {
         let ends = corners.iter().skip(1).chain(corners.first());
         corners.iter().zip(ends).map(|(a, b)| a.uv[0] * b.uv[1] - b.uv[0] * a.uv[1]).sum()
