@@ -9,6 +9,7 @@ use super::error::ReadError;
 use super::placement::{frame, point3, vector3};
 use super::scope::Scope;
 use super::spline::{Form, WrittenKnots, apply_weights, implied_knots};
+use super::transformation::placing;
 use crate::geometry::nurbs::{KnotVector, NurbsSurface};
 use crate::geometry::{Curve, Patch, PatchGrid, Surface};
 use crate::step::entity::Entity;
@@ -30,6 +31,7 @@ fn read_nested(scope: Scope<'_>, name: InstanceName, nest: Nest<'_>) -> Result<S
         Entity::RectangularTrimmedSurface => trimmed(scope, &view, nest),
         Entity::CurveBoundedSurface => Ok(Surface::CurveBounded { basis: basis(scope, &view, nest)? }),
         Entity::RectangularCompositeSurface => composite(scope, &view, nest),
+        Entity::SurfaceReplica => replica(scope, &view, nest),
         Entity::Plane => Ok(Surface::Plane(frame(scope, view.reference("position")?)?)),
         Entity::CylindricalSurface | Entity::SphericalSurface => round(scope, &view),
         Entity::ConicalSurface => cone(scope, &view),
@@ -137,6 +139,18 @@ fn composite(scope: Scope<'_>, view: &EntityView<'_>, nest: Nest<'_>) -> Result<
         }
     }
     PatchGrid::new(patches, rows).map(Surface::Composite).ok_or(ReadError::Unbounded { attribute })
+}
+
+/// A `SURFACE_REPLICA`: the parent's image under a scale, turn and shift. A mirror turns the normal of the parent's
+/// parametrisation with it, which a plane or a quadric in a right-handed frame cannot follow.
+fn replica(scope: Scope<'_>, view: &EntityView<'_>, nest: Nest<'_>) -> Result<Surface, ReadError> {
+    let parent = part(scope, view, "parent_surface", nest)?;
+    let name = view.reference("transformation")?;
+    let map = placing(scope, name)?;
+    if parent.image_turns_normal(&map) == map.keeps_orientation() {
+        return Err(ReadError::NotReadYet);
+    }
+    parent.transformed(&map).map_err(|_| ReadError::Coordinates(name))
 }
 
 fn swept(scope: Scope<'_>, view: &EntityView<'_>) -> Result<Box<Curve>, ReadError> {
