@@ -1,6 +1,6 @@
 //! Surfaces: ISO 10303-42 chapter 4.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::bounded_curve::{Nest, interval, within};
 use super::curve::{self, Trims, positive};
@@ -35,7 +35,8 @@ fn read_nested(scope: Scope<'_>, name: InstanceName, nest: Nest<'_>) -> Result<S
         Entity::Plane => Ok(Surface::Plane(frame(scope, view.reference("position")?)?)),
         Entity::CylindricalSurface | Entity::SphericalSurface => round(scope, &view),
         Entity::ConicalSurface => cone(scope, &view),
-        Entity::ToroidalSurface | Entity::DegenerateToroidalSurface => torus(scope, &view),
+        Entity::ToroidalSurface => torus(scope, &view),
+        Entity::DegenerateToroidalSurface => degenerate_torus(scope, &view),
         Entity::SurfaceOfLinearExtrusion => {
             let direction = vector3(scope, view.reference("extrusion_axis")?)?;
             Ok(Surface::LinearExtrusion { curve: swept(scope, &view)?, direction })
@@ -77,7 +78,6 @@ fn cone(scope: Scope<'_>, view: &EntityView<'_>) -> Result<Surface, ReadError> {
     Ok(Surface::Cone { frame, radius, semi_angle: radians })
 }
 
-/// A torus; a degenerate one, which meets itself, has the same equation and is bounded by its faces.
 fn torus(scope: Scope<'_>, view: &EntityView<'_>) -> Result<Surface, ReadError> {
     let [position, major, minor] = view.fields(["position", "major_radius", "minor_radius"]);
     Ok(Surface::Torus {
@@ -85,6 +85,18 @@ fn torus(scope: Scope<'_>, view: &EntityView<'_>) -> Result<Surface, ReadError> 
         major_radius: positive(real(major, "major_radius")?, "major_radius")?,
         minor_radius: positive(real(minor, "minor_radius")?, "minor_radius")?,
     })
+}
+
+/// A torus that meets itself on its axis: of the two parts between the poles the one that is asked for.
+fn degenerate_torus(scope: Scope<'_>, view: &EntityView<'_>) -> Result<Surface, ReadError> {
+    let torus = torus(scope, view)?;
+    let Surface::Torus { major_radius, minor_radius, .. } = torus else { return Ok(torus) };
+    if major_radius >= minor_radius {
+        return Ok(torus);
+    }
+    let pole = (-major_radius / minor_radius).acos();
+    let v = if view.boolean("select_outer")? { (-pole, pole) } else { (pole, TAU - pole) };
+    Ok(Surface::Trimmed { basis: Box::new(torus), u: (0.0, TAU), v, forward: [true; 2] })
 }
 
 /// The surface that another is made of; a failure names it.
