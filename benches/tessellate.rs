@@ -30,6 +30,8 @@ struct Made {
 /// Processor time of all threads of this process; where the system does not say, time on the wall.
 fn seconds() -> f64 {
     static START: LazyLock<Instant> = LazyLock::new(Instant::now);
+    // The system counts a running thread's time up when it gives way, else only at its ticks.
+    std::thread::yield_now();
     let threads = std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten();
     let nanoseconds = |thread: std::fs::DirEntry| -> Option<f64> {
         let text = std::fs::read_to_string(thread.path().join("schedstat")).ok()?;

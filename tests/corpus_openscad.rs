@@ -76,14 +76,18 @@ fn openscad_accepts_the_meshes_of_solids() {
             let name = format!("{} {:?}", path.display(), model.origins.bodies[id]);
             let metres = model.contexts[model.body_context[id]].length.metres;
             let mut chord = 1e-4 / metres;
-            let mesh = loop {
-                let mesh =
-                    tessellate_bodies(&model.brep, &[id], &Tolerances { chord, angle: 30f64.to_radians() });
-                match mesh {
-                    Ok(mesh) if mesh.triangles.len() > MOST && chord * metres < 1.0 => chord *= 4.0,
-                    mesh => break mesh,
-                }
+            let mesh_at = |chord: f64| {
+                tessellate_bodies(&model.brep, &[id], &Tolerances { chord, angle: 30f64.to_radians() })
             };
+            let mut mesh = mesh_at(chord);
+            // A chord as great as the part's details makes its bounds cross: the last mesh stays then.
+            while mesh.as_ref().is_ok_and(|mesh| mesh.triangles.len() > MOST) && chord * metres < 1.0 {
+                let coarser = mesh_at(4.0 * chord);
+                if coarser.is_err() {
+                    break;
+                }
+                (chord, mesh) = (4.0 * chord, coarser);
+            }
             count += 1;
             let refused = match mesh {
                 Ok(mut mesh) => {

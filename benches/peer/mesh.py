@@ -7,7 +7,7 @@ Needs the package `cadquery-ocp` and the bench `tessellate` (`cargo bench --no-r
 round runs both programs on the same file, one after the other, each in a process of its own and on one core, with
 the same chord (0.1 mm) and angle (20 degrees), Open CASCADE's `InParallel` off. Least processor times; reading
 is in neither, but Open CASCADE projects edges onto surfaces when it reads, and resurf when it tessellates: the
-last column has reading and tessellating together.
+last columns have reading alone (bytes to model; `ReadFile` and `TransferRoots`), and both together.
 """
 
 import json
@@ -62,8 +62,8 @@ def one_core():
 
 def run(command):
     environment = dict(os.environ, RAYON_NUM_THREADS="1")
-    done = subprocess.run(command, capture_output=True, preexec_fn=one_core, env=environment, check=True)
-    return json.loads(done.stdout.splitlines()[-1])
+    done = subprocess.run(command, capture_output=True, preexec_fn=one_core, env=environment)
+    return json.loads(done.stdout.splitlines()[-1]) if done.returncode == 0 else None
 
 
 def least(rounds):
@@ -74,21 +74,30 @@ def least(rounds):
 def main():
     binary, rounds, parts = sys.argv[1], int(sys.argv[2]), sys.argv[3:]
     print(f"chord {CHORD} mm, angle {ANGLE} degrees, least processor time of {rounds} rounds, faces per second")
-    print(f"{'':40} {'resurf':>28} {'Open CASCADE':>28}  ratio  with reading")
+    sums = [0.0] * 4
+    print(f"{'':40} {'resurf':>28} {'Open CASCADE':>28}  ratio  reading   both")
     for part in parts:
         ours, peer = [], []
         for _ in range(rounds):
             ours.append(run([binary, part, str(CHORD / 1e3), str(ANGLE)]))
             peer.append(run([sys.executable, "-c", PEER, part, str(CHORD), str(ANGLE)]))
+        name = os.path.basename(part)[:40]
+        if None in ours + peer or not all(made["faces"] for made in ours + peer):
+            print(f"{name:40} left out: one of the two reads or meshes no face of it")
+            continue
         ours, peer = least(ours), least(peer)
-        rate = lambda made: made["faces"] / made["seconds"]
+        rate = lambda made: made["faces"] / max(made["seconds"], 1e-6)
         show = lambda made: f"{made['faces']:5} {made['triangles']:7} tri {rate(made):9.0f}/s"
         whole = lambda made: made["seconds"] + made["read"]
-        name = os.path.basename(part)[:40]
-        print(f"{name:40} {show(ours):>28} {show(peer):>28} {rate(ours) / rate(peer):6.2f} {whole(peer) / whole(ours):6.2f}")
+        print(f"{name:40} {show(ours):>28} {show(peer):>28} {rate(ours) / rate(peer):6.2f} "
+              f"{peer['read'] / max(ours['read'], 1e-6):8.2f} {whole(peer) / whole(ours):6.2f}")
+        sums = [a + b for a, b in zip(sums, (ours["seconds"], peer["seconds"], ours["read"], peer["read"]))]
         for reason in ours["refused"]:
             print(f"    refused: {reason}")
         sys.stdout.flush()
+    if all(sums):
+        print(f"all files: meshing {sums[0]:.2f} s and {sums[1]:.2f} s, ratio {sums[1] / sums[0]:.2f}; "
+              f"reading {sums[2]:.3f} s and {sums[3]:.3f} s, ratio {sums[3] / sums[2]:.2f}")
 
 
 if __name__ == "__main__":

@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
-"""Reading a STEP file to the model, side by side with Open CASCADE, in one run.
+"""Reading STEP files to the model, and to the checked model, side by side with Open CASCADE, in one run.
 
-    python3 benches/peer/read.py FILE.step [ROUNDS]
+    python3 benches/peer/read.py BINARY ROUNDS FILE.step...
 
-Needs the package `cadquery-ocp` and a release build of resurf. Each round runs both programs on the same
-file, one after the other, each in a process of its own and on one core. Printed are the least CPU times
+Needs the package `cadquery-ocp`; BINARY is a release build of `resurf`. Each round runs both programs on the same
+file, one after the other, each in a process of its own and on one core. Printed are the least processor times
 and the greatest memory. Open CASCADE's figures are `ReadFile` and `TransferRoots` alone, without the start of
-Python; resurf's are the whole process (`inspect --json`: index, model, counts, extents, output).
+Python and without a check; resurf's are whole processes: `inspect --json` (index, model, counts, extents, output)
+and `check` (all own checks besides).
 """
 
 import json
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 PEER = """
 import resource, sys, time, json
@@ -23,48 +23,57 @@ Message.DefaultMessenger_s().ChangePrinters().Clear()
 reader = STEPControl_Reader()
 start = time.process_time()
 reader.ReadFile(sys.argv[1])
-read = time.process_time()
 reader.TransferRoots()
-print(json.dumps([read - start, time.process_time() - start, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss]))
+print(json.dumps([time.process_time() - start, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss]))
 """
 
 
 def one_core():
-    os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+    os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
 
 
 def run_peer(part):
     command = [sys.executable, "-c", PEER, part]
-    out = subprocess.run(command, check=True, capture_output=True, preexec_fn=one_core).stdout
-    return json.loads(out.splitlines()[-1])
+    out = subprocess.run(command, capture_output=True, preexec_fn=one_core).stdout
+    return json.loads(out.splitlines()[-1]) if out else None
 
 
-def run_resurf(binary, part):
-    process = subprocess.Popen([binary, "inspect", "--json", part], stdout=subprocess.DEVNULL, preexec_fn=one_core)
+def run_resurf(command):
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=one_core)
     _, status, usage = os.wait4(process.pid, 0)
-    if status != 0:
-        sys.exit(f"resurf failed on {part}: status {status}")
+    if os.WIFSIGNALED(status):
+        sys.exit(f"{command} ended by signal {os.WTERMSIG(status)}")
     return usage.ru_utime + usage.ru_stime, usage.ru_maxrss
 
 
+def least(rounds):
+    return min(seconds for seconds, _ in rounds), max(memory for _, memory in rounds)
+
+
 def main():
-    part = sys.argv[1]
-    rounds = int(sys.argv[2]) if len(sys.argv) > 2 else 3
-    binary = Path(__file__).resolve().parents[2] / "target" / "release" / "resurf"
-    size = os.path.getsize(part)
-    peer, ours = [], []
-    for _ in range(rounds):
-        ours.append(run_resurf(str(binary), part))
-        peer.append(run_peer(part))
-    read, total = min(p[0] for p in peer), min(p[1] for p in peer)
-    mine = min(o[0] for o in ours)
-    rate = lambda seconds: f"{seconds:8.3f} s  {size / seconds / 1e6:8.1f} MB/s"
-    memory = lambda kilobytes: f"{kilobytes * 1024 / size:5.2f} x file"
-    print(f"{part}: {size / 1e6:.1f} MB, {rounds} rounds, least CPU time, greatest memory")
-    print(f"resurf inspect          {rate(mine)}  {memory(max(o[1] for o in ours))}")
-    print(f"Open CASCADE ReadFile   {rate(read)}")
-    print(f"  + TransferRoots       {rate(total)}  {memory(max(p[2] for p in peer))}")
-    print(f"ratio {total / mine:.1f}")
+    binary, rounds, parts = sys.argv[1], int(sys.argv[2]), sys.argv[3:]
+    print(f"least processor time of {rounds} rounds, greatest memory in sizes of the file")
+    print(f"{'':40} {'MB':>6} {'inspect':>16} {'check':>16} {'Open CASCADE':>16}  ratio  checked")
+    sums = [0.0] * 3
+    for part in parts:
+        size = os.path.getsize(part)
+        runs = [[], [], []]
+        for _ in range(rounds):
+            runs[0].append(run_resurf([binary, "inspect", "--json", part]))
+            runs[1].append(run_resurf([binary, "check", part]))
+            runs[2].append(run_peer(part))
+        if None in runs[2]:
+            print(f"{os.path.basename(part)[:40]:40} left out: Open CASCADE does not come to an end")
+            continue
+        figures = [least(run) for run in runs]
+        times = [seconds for seconds, _ in figures]
+        shown = " ".join(f"{seconds:7.3f} s {memory * 1024 / size:5.1f} x" for seconds, memory in figures)
+        print(f"{os.path.basename(part)[:40]:40} {size / 1e6:6.2f} {shown} "
+              f"{times[2] / max(times[0], 1e-3):6.1f} {times[2] / max(times[1], 1e-3):8.1f}")
+        sys.stdout.flush()
+        sums = [total + seconds for total, seconds in zip(sums, times)]
+    print(f"all files: {sums[0]:.2f} s, {sums[1]:.2f} s checked, Open CASCADE {sums[2]:.2f} s: "
+          f"ratios {sums[2] / sums[0]:.1f} and {sums[2] / sums[1]:.1f}")
 
 
 if __name__ == "__main__":

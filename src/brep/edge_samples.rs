@@ -79,23 +79,29 @@ pub fn edge_range(brep: &Brep, edge: EdgeId) -> Option<EdgeRange> {
 
 /// The parameter of a vertex, with the ends of a bounded curve preferred where they are as near as anything.
 fn end_parameter(curve: &Curve, point: &Point3<f64>) -> f64 {
-    let found = curve.parameter_of(point, None);
+    let search = || curve.parameter_of(point, None);
     let size = match curve {
         Curve::Nurbs(nurbs) | Curve::Polyline(nurbs) => nurbs.bounding_box().diagonal(),
         Curve::Trimmed(_) | Curve::Composite(_) | Curve::Offset { .. } => {
             let (first, last) = curve.domain();
             if !(last - first).is_finite() {
-                return found;
+                return search();
             }
             let middle = curve.point_at(0.5 * (first + last));
             (middle - curve.point_at(first)).norm()
         }
-        _ => return found,
+        _ => return search(),
     };
     let (first, last) = curve.domain();
     let slack = AT_END * size;
     let away = |t: f64| (curve.point_at(t) - point).norm();
-    let (a, b, nearest) = (away(first), away(last), away(found));
+    let (a, b) = (away(first), away(last));
+    if a.min(b) <= slack {
+        // Nothing that a search finds could be preferred.
+        return if a <= b { first } else { last };
+    }
+    let found = search();
+    let nearest = away(found);
     if a <= b && a <= nearest + slack {
         first
     } else if b <= nearest + slack {

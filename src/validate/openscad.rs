@@ -44,13 +44,18 @@ pub fn ask_openscad(request: &Request) -> Result<Verdict, ValidateError> {
     judge(&mesh, format, finished, result)
 }
 
-/// The script, with a cube beside the mesh.
+/// The script, with a cube beside the mesh. The mesh is put round the origin: OpenSCAD writes six digits of a
+/// coordinate, which are few for a small part that lies far off.
 fn fill_in(name: &str, extents: Option<Extents>) -> String {
     let extents = extents.unwrap_or(Extents { min: [0.0; 3], max: [0.0; 3] });
     let size = if extents.diagonal() > 0.0 { extents.diagonal() } else { 1.0 };
-    let [x, y, z] = extents.max.map(|c| c + size);
+    let center = extents.center();
+    let [x, y, z] = [0, 1, 2].map(|k| extents.max[k] - center[k] + size);
     SCRIPT
         .replace("@MESH@", name)
+        .replace("@CX@", &center.x.to_string())
+        .replace("@CY@", &center.y.to_string())
+        .replace("@CZ@", &center.z.to_string())
         .replace("@X@", &x.to_string())
         .replace("@Y@", &y.to_string())
         .replace("@Z@", &z.to_string())
@@ -71,10 +76,14 @@ fn judge(mesh: &Mesh, format: &str, finished: Finished, result: &Path) -> Result
         }
         return Ok(Verdict::new(Validator::OpenScad, figures, messages, seconds));
     };
-    let out = match off::read(&bytes) {
+    let mut out = match off::read(&bytes) {
         Ok(out) => out,
         Err(error) => return Err(finished.no_sentinel(format!("garbled result: {error}"))),
     };
+    if let Some(extents) = mesh.extents() {
+        let back = extents.center().coords;
+        out.vertices.iter_mut().for_each(|vertex| *vertex += back);
+    }
     figures.triangles = Some(out.triangles.len() as u64);
     figures.volume = Some(out.signed_volume());
     figures.area = Some(out.area());

@@ -5,19 +5,20 @@
 
 use super::KnotVector;
 
-/// Room for the functions of one span.
+/// Room for the functions of one span, of any degree.
 const ROOM: usize = KnotVector::MAX_DEGREE + 1;
 
-/// The `p + 1` basis functions that do not vanish at a parameter, with derivatives up to the second.
+/// The `p + 1` basis functions that do not vanish at a parameter, with derivatives up to the second, in room for
+/// `N` functions: filling and moving the room for the greatest degree takes longer than a cubic's basis.
 #[derive(Debug, Clone)]
-pub struct LocalBasis {
+pub struct LocalBasis<const N: usize = ROOM> {
     /// Span, see [`KnotVector::span`].
     pub span: usize,
     degree: usize,
-    rows: [[f64; ROOM]; 3],
+    rows: [[f64; N]; 3],
 }
 
-impl LocalBasis {
+impl<const N: usize> LocalBasis<N> {
     /// Index of the first function.
     #[must_use]
     pub fn first(&self) -> usize {
@@ -72,10 +73,24 @@ impl KnotVector {
     #[inline]
     #[must_use]
     pub fn basis_of_span(&self, span: usize, u: f64, order: usize) -> LocalBasis {
+        self.basis_within(span, u, order)
+    }
+
+    /// As [`basis_derivatives`](Self::basis_derivatives), in room for `N` functions.
+    ///
+    /// # Panics
+    /// When the degree is not below `N`.
+    #[inline]
+    pub(super) fn basis_in_room<const N: usize>(&self, u: f64, order: usize) -> LocalBasis<N> {
+        self.basis_within(self.span(u), u, order)
+    }
+
+    #[inline]
+    fn basis_within<const N: usize>(&self, span: usize, u: f64, order: usize) -> LocalBasis<N> {
         let p = self.degree();
         assert!(span >= p && span < self.n_basis(), "span {span} is not in the domain");
-        let mut rows = [[0.0; ROOM]; 3];
-        let mut now = [0.0; ROOM];
+        let mut rows = [[0.0; N]; 3];
+        let mut now = [0.0; N];
         now[0] = 1.0;
         for j in 0..=p {
             if j > 0 {
@@ -93,7 +108,7 @@ impl KnotVector {
             }
         }
         for row in rows.iter_mut().skip(p + 1) {
-            *row = [0.0; ROOM];
+            *row = [0.0; N];
         }
         LocalBasis { span, degree: p, rows }
     }
@@ -102,14 +117,15 @@ impl KnotVector {
     #[inline]
     fn raise(&self, span: usize, u: f64, j: usize, row: &mut [f64]) {
         let knots = self.knots();
+        let (lows, highs) = (&knots[span + 1 - j..][..j], &knots[span + 1..][..j]);
         let mut saved = 0.0;
-        for r in 0..j {
-            let (low, high) = (knots[span + 1 + r - j], knots[span + 1 + r]);
-            let share = if high > low { row[r] / (high - low) } else { 0.0 };
-            row[r] = saved + (high - u) * share;
+        let (row, last) = row.split_at_mut(j);
+        for ((value, &low), &high) in row.iter_mut().zip(lows).zip(highs) {
+            let share = if high > low { *value / (high - low) } else { 0.0 };
+            *value = saved + (high - u) * share;
             saved = (u - low) * share;
         }
-        row[j] = saved;
+        last[0] = saved;
     }
 
     /// From coefficients on the `degree` functions of degree `degree - 1` to the derivatives they stand for
@@ -117,13 +133,14 @@ impl KnotVector {
     #[inline]
     fn differentiate(&self, span: usize, degree: usize, row: &mut [f64]) {
         let knots = self.knots();
+        let (lows, highs) = (&knots[span + 1 - degree..][..degree], &knots[span + 1..][..degree]);
         let mut saved = 0.0;
-        for r in 0..degree {
-            let (low, high) = (knots[span + 1 + r - degree], knots[span + 1 + r]);
-            let share = if high > low { degree as f64 * row[r] / (high - low) } else { 0.0 };
-            row[r] = saved - share;
+        let (row, last) = row.split_at_mut(degree);
+        for ((value, &low), &high) in row.iter_mut().zip(lows).zip(highs) {
+            let share = if high > low { degree as f64 * *value / (high - low) } else { 0.0 };
+            *value = saved - share;
             saved = share;
         }
-        row[degree] = saved;
+        last[0] = saved;
     }
 }

@@ -4,7 +4,7 @@
 //! nothing is allocated for a point. Parameters outside the domain continue the nearest span's polynomials.
 
 use super::basis::LocalBasis;
-use super::{NurbsCurve, NurbsCurve2, NurbsCurve3, NurbsSurface};
+use super::{KnotVector, NurbsCurve, NurbsCurve2, NurbsCurve3, NurbsSurface};
 use crate::math::{Point2, Point3, Vector2, Vector3};
 
 /// A point of a surface with its partial derivatives to second order.
@@ -125,6 +125,9 @@ impl NurbsCurve2 {
     }
 }
 
+/// Room for the functions of the degrees that nearly all surfaces have: below 6.
+const USUAL: usize = 6;
+
 /// Homogeneous sums of a surface: value, u, v, uu, uv, vv.
 type Sums = [[f64; 4]; 6];
 
@@ -138,9 +141,7 @@ impl NurbsSurface {
     /// Homogeneous point `(w x, w y, w z, w)`.
     #[must_use]
     pub fn homogeneous_point(&self, u: f64, v: f64) -> [f64; 4] {
-        let bu = self.knots_u().basis_derivatives(u, 0);
-        let bv = self.knots_v().basis_derivatives(v, 0);
-        self.sums::<0>(&bu, &bv)[0]
+        self.sums_at::<0>(u, v)[0]
     }
 
     /// Point at `(u, v)`.
@@ -153,24 +154,20 @@ impl NurbsSurface {
     /// Point and first derivatives by `u` and `v`: cheaper than [`derivatives`](Self::derivatives).
     #[must_use]
     pub fn first_derivatives(&self, u: f64, v: f64) -> (Point3<f64>, Vector3<f64>, Vector3<f64>) {
-        let bu = self.knots_u().basis_derivatives(u, 1);
-        let bv = self.knots_v().basis_derivatives(v, 1);
-        let d = quotients(&self.sums::<1>(&bu, &bv));
+        let d = quotients(&self.sums_at::<1>(u, v));
         (d.point, d.du, d.dv)
     }
 
     /// Point and derivatives to second order.
     #[must_use]
     pub fn derivatives(&self, u: f64, v: f64) -> SurfaceDerivatives {
-        let bu = self.knots_u().basis_derivatives(u, 2);
-        let bv = self.knots_v().basis_derivatives(v, 2);
-        self.derivatives_by(&bu, &bv)
+        quotients(&self.sums_at::<2>(u, v))
     }
 
     /// As [`derivatives`](Self::derivatives), by bases that were computed before with order 2.
     #[must_use]
     pub fn derivatives_by(&self, bu: &LocalBasis, bv: &LocalBasis) -> SurfaceDerivatives {
-        quotients(&self.sums::<2>(bu, bv))
+        quotients(&self.sums::<2, _>(bu, bv))
     }
 
     /// Unit normal `du × dv / |du × dv|`; `None` where the parametrisation is singular.
@@ -206,11 +203,55 @@ impl NurbsSurface {
     pub fn grid_derivatives(&self, us: &[f64], vs: &[f64]) -> Vec<SurfaceDerivatives> {
         let bases: Vec<LocalBasis> = vs.iter().map(|&v| self.knots_v().basis_derivatives(v, 2)).collect();
         let mut out = Vec::with_capacity(us.len() * vs.len());
+        // The columns of the net that any of the bases reaches.
+        let first = bases.iter().map(LocalBasis::first).min().unwrap_or(0);
+        let last = bases.iter().map(|basis| basis.span + 1).max().unwrap_or(0);
+        let nv = self.shape().1;
+        let mut rows = vec![[[0.0; 4]; 3]; last - first];
         for &u in us {
             let bu = self.knots_u().basis_derivatives(u, 2);
-            out.extend(bases.iter().map(|bv| self.derivatives_by(&bu, bv)));
+            rows.fill([[0.0; 4]; 3]);
+            for i in 0..bu.values().len() {
+                let source = &self.net()[(bu.first() + i) * nv..][first..last];
+                let factors = [0, 1, 2].map(|order| bu.derivatives(order)[i]);
+                for (row, point) in rows.iter_mut().zip(source) {
+                    (0..3).for_each(|order| accumulate(&mut row[order], factors[order], point));
+                }
+            }
+            out.extend(bases.iter().map(|bv| {
+                let mut sums: Sums = [[0.0; 4]; 6];
+                let values = bv.values().iter().zip(bv.derivatives(1)).zip(bv.derivatives(2));
+                for (((&b, &db), &ddb), [p, pu, puu]) in values.zip(&rows[bv.first() - first..]) {
+                    accumulate(&mut sums[0], b, p);
+                    accumulate(&mut sums[1], b, pu);
+                    accumulate(&mut sums[2], db, p);
+                    accumulate(&mut sums[3], b, puu);
+                    accumulate(&mut sums[4], db, pu);
+                    accumulate(&mut sums[5], ddb, p);
+                }
+                quotients(&sums)
+            }));
         }
         out
+    }
+
+    /// Points and first derivatives at places `(i, j)` of the grid `us × vs`; each basis is computed once.
+    ///
+    /// # Panics
+    /// For a place outside the grid.
+    #[must_use]
+    pub fn grid_tangents(
+        &self,
+        us: &[f64],
+        vs: &[f64],
+        places: &[[usize; 2]],
+    ) -> Vec<(Point3<f64>, Vector3<f64>, Vector3<f64>)> {
+        let along = |knots: &KnotVector, at: &[f64]| -> Vec<LocalBasis> {
+            at.iter().map(|&t| knots.basis_derivatives(t, 1)).collect()
+        };
+        let (us, vs) = (along(self.knots_u(), us), along(self.knots_v(), vs));
+        let at = |&[i, j]: &[usize; 2]| quotients(&self.sums::<1, _>(&us[i], &vs[j]));
+        places.iter().map(at).map(|d| (d.point, d.du, d.dv)).collect()
     }
 
     /// Control points of the iso-curve of constant `u`.
@@ -225,9 +266,22 @@ impl NurbsSurface {
         }
     }
 
+    /// Tensor-product sums at a place, up to the order that the constant names.
+    #[inline]
+    fn sums_at<const ORDER: usize>(&self, u: f64, v: f64) -> Sums {
+        let (knots_u, knots_v) = (self.knots_u(), self.knots_v());
+        if knots_u.degree().max(knots_v.degree()) < USUAL {
+            let bu = knots_u.basis_in_room::<USUAL>(u, ORDER);
+            let bv = knots_v.basis_in_room::<USUAL>(v, ORDER);
+            return self.sums::<ORDER, USUAL>(&bu, &bv);
+        }
+        let (bu, bv) = (knots_u.basis_derivatives(u, ORDER), knots_v.basis_derivatives(v, ORDER));
+        self.sums::<ORDER, _>(&bu, &bv)
+    }
+
     /// Tensor-product sums up to the order that the constant names.
     #[inline]
-    fn sums<const ORDER: usize>(&self, bu: &LocalBasis, bv: &LocalBasis) -> Sums {
+    fn sums<const ORDER: usize, const N: usize>(&self, bu: &LocalBasis<N>, bv: &LocalBasis<N>) -> Sums {
         let nv = self.shape().1;
         let mut out = [[0.0; 4]; 6];
         let (u0, v0) = (bu.derivatives(0), bv.derivatives(0));

@@ -7,7 +7,10 @@ use super::{ATTEMPTS, TessellateError, Tolerances, Wrapped, edges};
 use crate::brep::{Brep, EdgeId, FaceId, VertexId};
 use crate::math::{Point3, Vector3};
 use crate::mesh::Mesh;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Stands for the index of a vertex that the mesh does not have yet: above all others.
+const NOT_YET: u32 = u32::MAX;
 
 /// A mesh in the making.
 pub(super) struct Work<'a> {
@@ -141,10 +144,10 @@ impl<'a> Work<'a> {
         self.part_common_chords(faces);
         let forward = self.orientations(faces);
         let mut mesh = Mesh::default();
-        let mut places: BTreeMap<u32, u32> = BTreeMap::new();
+        let mut places = vec![NOT_YET; self.points.len()];
         for (&face, forward) in faces.iter().zip(forward) {
             let Some(region) = self.regions.get(&face) else { continue };
-            add_region(&mut mesh, &mut places, self.brep, face, region, forward)?;
+            add_region(&mut mesh, &mut places, face, region, forward)?;
         }
         Ok(mesh)
     }
@@ -152,21 +155,20 @@ impl<'a> Work<'a> {
     /// Divides chords across faces that others use as well: two faces may meet in two vertices that a chord of
     /// each joins, and four triangles cannot share it.
     fn part_common_chords(&mut self, faces: &[FaceId]) {
-        let mut uses: BTreeMap<(u32, u32), u32> = BTreeMap::new();
-        for region in faces.iter().filter_map(|face| self.regions.get(face)) {
-            for side in region.shared_sides() {
-                *uses.entry(side).or_default() += 1;
-            }
-        }
-        uses.retain(|_, count| *count > 2);
-        if uses.is_empty() {
+        let regions = faces.iter().filter_map(|face| self.regions.get(face));
+        let mut sides: Vec<(u32, u32)> = regions.flat_map(Region::shared_sides).collect();
+        sides.sort_unstable();
+        let mut crowded =
+            sides.chunk_by(|a, b| a == b).filter(|run| run.len() > 2).map(|run| run[0]).peekable();
+        if crowded.peek().is_none() {
             return;
         }
+        let crowded: BTreeSet<(u32, u32)> = crowded.collect();
         for &face in faces {
             let Some(surface) = self.brep.surface_of(face).read() else { continue };
             let domain = Wrapped::of(surface);
             if let Some(region) = self.regions.get_mut(&face) {
-                region.part_chords(&|side| uses.contains_key(&side), &|uv| domain.point(uv[0], uv[1]));
+                region.part_chords(&|side| crowded.contains(&side), &|uv| domain.tangents(uv[0], uv[1]));
             }
         }
     }
@@ -210,14 +212,11 @@ impl<'a> Work<'a> {
 /// Appends the triangles of a face.
 fn add_region(
     mesh: &mut Mesh,
-    places: &mut BTreeMap<u32, u32>,
-    brep: &Brep,
+    places: &mut [u32],
     face: FaceId,
     region: &Region,
     forward: bool,
 ) -> Result<(), TessellateError> {
-    let surface = brep.surface_of(face).read().expect("faces without a surface end before");
-    let domain = Wrapped::of(surface);
     let mut own: BTreeMap<u32, u32> = BTreeMap::new();
     let mut indices = Vec::with_capacity(region.nodes.len());
     for node in &region.nodes {
@@ -225,7 +224,11 @@ fn add_region(
         let index = match node.vertex {
             None => next,
             Some(vertex) if vertex & OWN != 0 => *own.entry(vertex).or_insert(next),
-            Some(vertex) => *places.entry(vertex).or_insert(next),
+            Some(vertex) => {
+                let place = &mut places[vertex as usize];
+                *place = (*place).min(next);
+                *place
+            }
         };
         if index == next {
             mesh.vertices.push(node.point);
@@ -235,7 +238,7 @@ fn add_region(
     if mesh.vertices.len() > Tolerances::MOST_VERTICES {
         return Err(TessellateError::TooManyVertices);
     }
-    let normal = |node: &Node| domain.normal(node.uv[0], node.uv[1]).map(|n| if forward { n } else { -n });
+    let normal = |node: &Node| node.normal().map(|n| if forward { n } else { -n });
     let normals: Vec<Option<Vector3<f64>>> = region.nodes.iter().map(normal).collect();
     for corners in &region.triangles {
         let corners = if forward { *corners } else { [corners[0], corners[2], corners[1]] };

@@ -11,6 +11,7 @@
 mod assemble;
 mod boundary;
 mod edges;
+mod flat;
 mod lattice;
 mod region;
 mod untangle;
@@ -19,12 +20,13 @@ use super::Mesh;
 use crate::brep::{BodyId, Brep, EdgeId, FaceId, ParameterLoopError, VertexId};
 use crate::geometry::nurbs::KnotVector;
 use crate::geometry::{Carried, Curve, Surface, SurfaceDerivatives};
-use crate::math::{Point3, Vector3};
+use crate::math::Point3;
 use boundary::{Context, SharedEdge};
 use lattice::SAMPLES;
 use rayon::prelude::*;
-use region::{Corner, Region, RegionError, Shape};
+use region::{Corner, Region, RegionError, Shape, Tangents};
 use std::collections::BTreeMap;
+use std::f64::consts::FRAC_PI_2;
 
 /// How far triangles may be from the surfaces.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -322,6 +324,31 @@ const FEWEST_SAMPLES: usize = 5;
 /// Samples for each further span of a B-spline.
 const SPAN_SAMPLES: usize = 3;
 
+/// Spans of a B-spline that a cubic may stand for.
+const REACH_SPANS: f64 = 1.5;
+
+/// A length of the parameter within which a B-spline bends steadily; zero where a tangent may break.
+fn span_reach(knots: &KnotVector) -> f64 {
+    let (values, counts) = knots.distinct();
+    let inner = counts.get(1..counts.len().saturating_sub(1)).unwrap_or_default();
+    let breaks = knots.degree() < 2 || inner.iter().any(|&count| count >= knots.degree());
+    let (Some(first), Some(last)) = (values.first(), values.last()) else { return 0.0 };
+    #[expect(clippy::cast_precision_loss, reason = "a count of knots")]
+    let mean = (last - first) / (inner.len() + 1) as f64;
+    match (breaks, inner.is_empty()) {
+        // One polynomial; of a high degree it may wind.
+        (_, true) => {
+            if knots.degree() <= 3 {
+                last - first
+            } else {
+                0.5 * (last - first)
+            }
+        }
+        (true, false) => 0.0,
+        (false, false) => REACH_SPANS * mean,
+    }
+}
+
 impl Shape for Wrapped<'_> {
     fn derivatives(&self, u: f64, v: f64) -> SurfaceDerivatives {
         let (u, v) = self.wrapped(u, v);
@@ -333,13 +360,41 @@ impl Shape for Wrapped<'_> {
         self.surface.point(u, v)
     }
 
-    fn normal(&self, u: f64, v: f64) -> Option<Vector3<f64>> {
+    fn tangents(&self, u: f64, v: f64) -> Tangents {
         let (u, v) = self.wrapped(u, v);
-        match self.surface {
+        let (point, du, dv) = match self.surface {
             // Without second derivatives.
-            Surface::Nurbs(nurbs) => nurbs.normal(u, v),
-            surface => surface.normal(u, v),
+            Surface::Nurbs(nurbs) => nurbs.first_derivatives(u, v),
+            surface => {
+                let SurfaceDerivatives { point, du, dv, .. } = surface.derivatives(u, v);
+                (point, du, dv)
+            }
+        };
+        Tangents { point, du, dv }
+    }
+
+    fn tangents_on(&self, us: &[f64], vs: &[f64], places: &[[usize; 2]]) -> Vec<Tangents> {
+        let Surface::Nurbs(nurbs) = self.surface else {
+            return places.iter().map(|&[i, j]| self.tangents(us[i], vs[j])).collect();
+        };
+        let wrapped = |at: &[f64], turn| -> Vec<f64> { at.iter().map(|&at| wrap(at, turn)).collect() };
+        let (us, vs) = (wrapped(us, self.turns[0]), wrapped(vs, self.turns[1]));
+        let all = nurbs.grid_tangents(&us, &vs, places).into_iter();
+        all.map(|(point, du, dv)| Tangents { point, du, dv }).collect()
+    }
+
+    fn reach(&self) -> [f64; 2] {
+        match self.surface {
+            Surface::Plane(_) => [f64::INFINITY; 2],
+            Surface::Cylinder { .. } | Surface::Cone { .. } => [FRAC_PI_2, f64::INFINITY],
+            Surface::Sphere { .. } | Surface::Torus { .. } => [FRAC_PI_2; 2],
+            Surface::Nurbs(nurbs) => [nurbs.knots_u(), nurbs.knots_v()].map(span_reach),
+            _ => [0.0; 2],
         }
+    }
+
+    fn is_flat(&self) -> bool {
+        matches!(self.surface, Surface::Plane(_))
     }
 
     fn grid(&self, us: &[f64], vs: &[f64]) -> Vec<SurfaceDerivatives> {

@@ -5,11 +5,13 @@
 
 use super::Tolerances;
 use super::boundary::OWN;
+use super::flat::turn_flat;
 use super::lattice::{Lattice, SAMPLES};
 use crate::geometry::nurbs::SurfaceDerivatives;
 use crate::math::{Point3, Vector3};
+use spade::handles::{FixedFaceHandle, FixedVertexHandle, InnerTag};
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, PositionInTriangulation, Triangulation};
-use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, HashMap, VecDeque};
 
 /// Rounds of refinement. Each at least halves the triangles that need it, so the sag falls to 1/4 or less;
 /// what is left after so many rounds is not curvature but a gap or a fold in the data.
@@ -22,6 +24,18 @@ const CLEARANCE: f64 = 0.35;
 /// the gap between an edge and its surface would be refined for ever.
 const SMALLEST: f64 = 4.0;
 
+/// Shares of the chord tolerance between which the bend of a side by its ends' tangents is not taken at its word:
+/// the surface is asked for the middle then.
+const DOUBT: [f64; 2] = [0.5, 1.5];
+
+/// A point with its first derivatives by both parameters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Tangents {
+    pub point: Point3<f64>,
+    pub du: Vector3<f64>,
+    pub dv: Vector3<f64>,
+}
+
 /// What a region lies on, over the plane of its parameters.
 pub(super) trait Shape {
     /// Point and derivatives to second order.
@@ -32,9 +46,26 @@ pub(super) trait Shape {
         self.derivatives(u, v).point
     }
 
-    /// The unit normal; `None` where there is none.
-    fn normal(&self, u: f64, v: f64) -> Option<Vector3<f64>> {
-        self.derivatives(u, v).normal()
+    /// Point and first derivatives.
+    fn tangents(&self, u: f64, v: f64) -> Tangents {
+        let SurfaceDerivatives { point, du, dv, .. } = self.derivatives(u, v);
+        Tangents { point, du, dv }
+    }
+
+    /// As [`tangents`](Self::tangents) at places `(i, j)` of the grid `us × vs`.
+    fn tangents_on(&self, us: &[f64], vs: &[f64], places: &[[usize; 2]]) -> Vec<Tangents> {
+        places.iter().map(|&[i, j]| self.tangents(us[i], vs[j])).collect()
+    }
+
+    /// Lengths along both parameters within which a cubic with the tangents of its ends follows the surface; zeros where
+    /// nothing of the kind is known.
+    fn reach(&self) -> [f64; 2] {
+        [0.0; 2]
+    }
+
+    /// Whether it is a plane.
+    fn is_flat(&self) -> bool {
+        false
     }
 
     /// As [`derivatives`](Self::derivatives) over the grid `us × vs`, row by row in `u`.
@@ -69,6 +100,15 @@ pub(super) struct Node {
     pub point: Point3<f64>,
     /// The mesh's vertex; `None` for a point within the face.
     pub vertex: Option<u32>,
+    /// Derivatives of the surface by both parameters.
+    pub tangents: [Vector3<f64>; 2],
+}
+
+impl Node {
+    /// The unit normal; `None` where the parametrisation is singular.
+    pub(super) fn normal(&self) -> Option<Vector3<f64>> {
+        self.tangents[0].cross(&self.tangents[1]).try_normalize(0.0)
+    }
 }
 
 /// Triangles over nodes, counter-clockwise in the parameter plane.
@@ -103,9 +143,9 @@ impl Region {
     pub(super) fn part_chords(
         &mut self,
         picks: &dyn Fn((u32, u32)) -> bool,
-        point: &dyn Fn([f64; 2]) -> Point3<f64>,
+        tangents: &dyn Fn([f64; 2]) -> Tangents,
     ) {
-        while self.part_some_chords(picks, point) {}
+        while self.part_some_chords(picks, tangents) {}
     }
 
     /// Divides picked chords of which no two have a triangle in common; whether there was any. Each round
@@ -113,7 +153,7 @@ impl Region {
     fn part_some_chords(
         &mut self,
         picks: &dyn Fn((u32, u32)) -> bool,
-        point: &dyn Fn([f64; 2]) -> Point3<f64>,
+        tangents: &dyn Fn([f64; 2]) -> Tangents,
     ) -> bool {
         let mut users: BTreeMap<(u32, u32), Vec<usize>> = BTreeMap::new();
         for (at, &[a, b, c]) in self.triangles.iter().enumerate() {
@@ -135,7 +175,8 @@ impl Region {
             touched.extend([first, second]);
             let (from, to) = (self.nodes[a as usize], self.nodes[b as usize]);
             let uv = [0, 1].map(|k| 0.5 * (from.uv[k] + to.uv[k]));
-            self.nodes.push(Node { uv, point: point(uv), vertex: None });
+            let Tangents { point, du, dv } = tangents(uv);
+            self.nodes.push(Node { uv, point, vertex: None, tangents: [du, dv] });
             for at in [first, second] {
                 let corners = self.triangles[at];
                 self.triangles[at] = corners.map(|corner| if corner == a { middle } else { corner });
@@ -176,15 +217,22 @@ impl HasPosition for Site {
 struct Work<'a, E> {
     nodes: Vec<Node>,
     cdt: ConstrainedDelaunayTriangulation<Site>,
-    /// Pairs of sites between which an odd number of boundary pieces run.
-    walls: BTreeSet<(usize, usize)>,
+    /// For each undirected edge whether an odd number of boundary pieces run there. Such edges are never turned, so they
+    /// keep their numbers; edges with higher numbers came later.
+    walls: Vec<bool>,
     lattice: Lattice,
     shape: &'a E,
     budget: usize,
-    /// Triangles, by their nodes in ascending order, that were found to be near enough.
-    settled: HashSet<[u32; 3]>,
-    /// The distances of the middles of sides from the surface, by their nodes in ascending order.
-    sides: HashMap<[u32; 2], f64>,
+    /// For each undirected edge of the triangulation the nodes that it last had, and how far their side is off the
+    /// surface: at an edge that was turned since, other nodes stand.
+    sides: Vec<([u32; 2], f64)>,
+}
+
+/// A place where a triangle wants a point, and a corner of the triangle, from where the way to it is short.
+#[derive(Debug, Clone, Copy)]
+struct Wanted {
+    uv: [f64; 2],
+    near: FixedVertexHandle,
 }
 
 /// Triangulates what lies inside an odd number of loops.
@@ -203,28 +251,17 @@ pub(super) fn triangulate<E: Shape>(
     });
     let lattice = Lattice::new(bounds, tolerances, shape).ok_or(RegionError::Degenerate)?;
     let cdt = ConstrainedDelaunayTriangulation::new();
-    let mut work = Work {
-        nodes: Vec::new(),
-        cdt,
-        walls: BTreeSet::new(),
-        lattice,
-        shape,
-        budget,
-        settled: HashSet::new(),
-        sides: HashMap::new(),
-    };
-    work.add_boundary(loops)?;
-    work.add_lattice(loops)?;
-    for _ in 0..ROUNDS {
-        let wanted = work.too_coarse(tolerances);
-        if wanted.is_empty() {
-            break;
-        }
-        for uv in wanted {
-            work.add_inner(uv)?;
-        }
+    let mut work =
+        Work { nodes: Vec::new(), cdt, walls: Vec::new(), lattice, shape, budget, sides: Vec::new() };
+    let inner = work.lattice_points(loops);
+    work.load(loops, inner)?;
+    if !shape.is_flat() {
+        work.refine(tolerances)?;
     }
-    let triangles = work.inner_triangles();
+    let mut triangles = work.inner_triangles();
+    if !shape.is_flat() {
+        turn_flat(&mut triangles, &work.nodes);
+    }
     let area = |corners: &Vec<Corner>| -> f64 {
         let ends = corners.iter().skip(1).chain(corners.first());
         corners.iter().zip(ends).map(|(a, b)| a.uv[0] * b.uv[1] - b.uv[0] * a.uv[1]).sum()
@@ -243,90 +280,115 @@ impl<E: Shape> Work<'_, E> {
         Point2::new(tidy(0), tidy(1))
     }
 
-    fn add_boundary(&mut self, loops: &[Vec<Corner>]) -> Result<(), RegionError> {
+    /// Triangulates the corners of the boundary together with points within, and puts up the walls.
+    fn load(&mut self, loops: &[Vec<Corner>], inner: Vec<([f64; 2], Tangents)>) -> Result<(), RegionError> {
         let mut pieces = Vec::new();
-        let mut known = BTreeMap::new();
+        let mut sites: Vec<Site> = Vec::new();
+        let mut known: HashMap<[u64; 2], usize> = HashMap::new();
         for corners in loops {
-            let mut handles = Vec::with_capacity(corners.len());
+            let mut places = Vec::with_capacity(corners.len());
             for corner in corners {
                 let position = self.position(corner.uv);
                 // Zero added, since -0 and 0 are one place.
                 let place = [position.x, position.y].map(|c| (c + 0.0).to_bits());
-                if let Some(&vertex) = known.get(&place) {
-                    let node = self.nodes[self.cdt.vertex(vertex).data().node as usize];
-                    if node.vertex != Some(corner.vertex) {
+                if let Some(&at) = known.get(&place) {
+                    if self.nodes[sites[at].node as usize].vertex != Some(corner.vertex) {
                         return Err(RegionError::Coincident(corner.point));
                     }
-                    handles.push(vertex);
+                    places.push(at);
                     continue;
                 }
-                let node = self.push_node(corner.uv, corner.point, Some(corner.vertex))?;
-                let vertex = self.cdt.insert(Site { position, node }).map_err(|_| RegionError::Degenerate)?;
-                known.insert(place, vertex);
-                handles.push(vertex);
+                let at = Tangents { point: corner.point, du: Vector3::zeros(), dv: Vector3::zeros() };
+                let node = self.push_node(corner.uv, &at, Some(corner.vertex))?;
+                known.insert(place, sites.len());
+                places.push(sites.len());
+                sites.push(Site { position, node });
             }
-            let ends = handles.iter().skip(1).chain(handles.first());
-            pieces.extend(handles.iter().zip(ends).map(|(&a, &b)| (a, b)));
+            let ends = places.iter().skip(1).chain(places.first());
+            pieces.extend(places.iter().zip(ends).map(|(&a, &b)| (a, b)));
         }
-        for (from, to) in pieces.into_iter().filter(|(from, to)| from != to) {
+        for (uv, at) in inner {
+            let position = self.position(uv);
+            let node = self.push_node(uv, &at, None)?;
+            sites.push(Site { position, node });
+        }
+        // All at once is much faster than one after the other.
+        let count = sites.len();
+        self.cdt = Triangulation::bulk_load(sites).map_err(|_| RegionError::Degenerate)?;
+        let mut handles: Vec<_> = self.cdt.vertices().map(|v| (v.data().node, v.fix())).collect();
+        handles.sort_unstable_by_key(|(node, _)| *node);
+        if handles.len() != count {
+            return Err(RegionError::Degenerate);
+        }
+        let pieces = pieces.into_iter().map(|(a, b)| (handles[a].1, handles[b].1));
+        self.put_up_walls(pieces)?;
+        for node in self.nodes.iter_mut().filter(|node| node.vertex.is_some()) {
+            let at = self.shape.tangents(node.uv[0], node.uv[1]);
+            node.tangents = [at.du, at.dv];
+        }
+        Ok(())
+    }
+
+    fn put_up_walls(
+        &mut self,
+        pieces: impl Iterator<Item = (FixedVertexHandle, FixedVertexHandle)>,
+    ) -> Result<(), RegionError> {
+        for (from, to) in pieces.filter(|(from, to)| from != to) {
             let edges = self.cdt.try_add_constraint(from, to);
             if edges.is_empty() {
                 let node = self.cdt.vertex(from).data().node as usize;
                 return Err(RegionError::Crossing(self.nodes[node].point));
             }
             for edge in edges {
-                let ends = self.cdt.directed_edge(edge).vertices().map(|v| v.fix().index());
-                let wall = (ends[0].min(ends[1]), ends[0].max(ends[1]));
-                if !self.walls.remove(&wall) {
-                    self.walls.insert(wall);
+                let at = edge.as_undirected().index();
+                if self.walls.len() <= at {
+                    self.walls.resize(at + 1, false);
                 }
+                self.walls[at] ^= true;
             }
         }
         Ok(())
     }
 
-    fn push_node(
-        &mut self,
-        uv: [f64; 2],
-        point: Point3<f64>,
-        vertex: Option<u32>,
-    ) -> Result<u32, RegionError> {
+    fn push_node(&mut self, uv: [f64; 2], at: &Tangents, vertex: Option<u32>) -> Result<u32, RegionError> {
         if self.nodes.len() >= self.budget {
             return Err(RegionError::TooMany);
         }
         let node = u32::try_from(self.nodes.len()).map_err(|_| RegionError::TooMany)?;
-        self.nodes.push(Node { uv, point, vertex });
+        self.nodes.push(Node { uv, point: at.point, vertex, tangents: [at.du, at.dv] });
         Ok(node)
     }
 
     /// Adds a point within the face, unless it falls on a boundary or another point.
-    fn add_inner(&mut self, uv: [f64; 2]) -> Result<(), RegionError> {
-        let position = self.position(uv);
-        let free = match self.cdt.locate(position) {
-            PositionInTriangulation::OnFace(_) => true,
-            PositionInTriangulation::OnEdge(edge) => !self.cdt.is_constraint_edge(edge.as_undirected()),
-            _ => false,
+    fn add_inner(&mut self, wanted: &Wanted) -> Result<Option<FixedVertexHandle>, RegionError> {
+        let position = self.position(wanted.uv);
+        let near = match self.cdt.locate_with_hint(position, wanted.near) {
+            PositionInTriangulation::OnFace(face) => self.cdt.face(face).vertices()[0].fix(),
+            PositionInTriangulation::OnEdge(edge) if !self.cdt.is_constraint_edge(edge.as_undirected()) => {
+                self.cdt.directed_edge(edge).from().fix()
+            }
+            _ => return Ok(None),
         };
-        let point = self.point(uv);
-        if !free || !point.iter().all(|c| c.is_finite()) {
-            return Ok(());
+        let at = self.shape.tangents(wanted.uv[0], wanted.uv[1]);
+        if !at.point.iter().all(|c| c.is_finite()) {
+            return Ok(None);
         }
-        let node = self.push_node(uv, point, None)?;
-        self.cdt.insert(Site { position, node }).map_err(|_| RegionError::Degenerate)?;
-        Ok(())
+        let node = self.push_node(wanted.uv, &at, None)?;
+        let vertex = self.cdt.insert_with_hint(Site { position, node }, near);
+        vertex.map(Some).map_err(|_| RegionError::Degenerate)
     }
 
-    /// Adds the lattice's points that lie inside and clear of the boundary, line by line.
-    fn add_lattice(&mut self, loops: &[Vec<Corner>]) -> Result<(), RegionError> {
-        let scale = self.lattice.scale;
+    /// The lattice's points that lie inside and clear of the boundary, line by line.
+    fn lattice_points(&self, loops: &[Vec<Corner>]) -> Vec<([f64; 2], Tangents)> {
+        let Lattice { us, vs, scale } = &self.lattice;
         let scaled = |corner: &Corner| [corner.uv[0] * scale[0], corner.uv[1] * scale[1]];
         let segments: Vec<[[f64; 2]; 2]> = loops
             .iter()
             .flat_map(|l| l.iter().zip(l.iter().skip(1).chain(l.first())))
             .map(|(a, b)| [scaled(a), scaled(b)])
             .collect();
-        let (us, vs) = (self.lattice.us.clone(), self.lattice.vs.clone());
-        for &v in &vs {
+        let mut places = Vec::new();
+        for (j, &v) in vs.iter().enumerate() {
             let y = v * scale[1];
             let reached =
                 |[a, b]: &&[[f64; 2]; 2]| a[1].min(b[1]) - CLEARANCE <= y && y <= a[1].max(b[1]) + CLEARANCE;
@@ -337,12 +399,46 @@ impl<E: Shape> Work<'_, E> {
                 .map(|[a, b]| a[0] + (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1]))
                 .collect();
             crossings.sort_by(f64::total_cmp);
-            for &u in &us {
+            for (i, &u) in us.iter().enumerate() {
                 let x = u * scale[0];
                 let inside = crossings.partition_point(|&c| c < x) % 2 == 1;
-                if inside && near.iter().all(|segment| distance([x, y], segment) > CLEARANCE) {
-                    self.add_inner([u, v])?;
+                let beside =
+                    |[a, b]: &[[f64; 2]; 2]| x < a[0].min(b[0]) - CLEARANCE || a[0].max(b[0]) + CLEARANCE < x;
+                if inside && near.iter().all(|side| beside(side) || distance([x, y], side) > CLEARANCE) {
+                    places.push([i, j]);
                 }
+            }
+        }
+        let points = self.shape.tangents_on(us, vs, &places).into_iter();
+        let points = points.zip(&places).map(|(at, &[i, j])| ([us[i], vs[j]], at));
+        points.filter(|(_, at)| at.point.iter().all(|c| c.is_finite())).collect()
+    }
+
+    /// Adds points until the triangles lie on the surface, or enough was done.
+    fn refine(&mut self, tolerances: &Tolerances) -> Result<(), RegionError> {
+        let inside = self.inside();
+        let inner = self.cdt.inner_faces().map(|face| face.fix());
+        let mut open: Vec<_> = inner.filter(|face| inside[face.index()]).collect();
+        let mut rounds = Vec::new();
+        for round in 0..ROUNDS {
+            let wanted = self.too_coarse(&open, tolerances);
+            open.clear();
+            let mut added = Vec::new();
+            for wanted in &wanted {
+                added.extend(self.add_inner(wanted)?);
+            }
+            // Only triangles at a new point are new; and what lies round it lies inside, as it does itself.
+            rounds.resize(self.cdt.num_all_faces(), 0);
+            for vertex in added {
+                let around = self.cdt.vertex(vertex).out_edges();
+                for face in around.filter_map(|edge| edge.face().as_inner()).map(|face| face.fix()) {
+                    if std::mem::replace(&mut rounds[face.index()], round + 1) != round + 1 {
+                        open.push(face);
+                    }
+                }
+            }
+            if open.is_empty() {
+                break;
             }
         }
         Ok(())
@@ -355,8 +451,7 @@ impl<E: Shape> Work<'_, E> {
         inside[outer] = Some(false);
         let mut queue = VecDeque::new();
         let wall = |edge: spade::handles::DirectedEdgeHandle<'_, Site, (), spade::CdtEdge<()>, ()>| {
-            let [a, b] = edge.vertices().map(|v| v.fix().index());
-            self.walls.contains(&(a.min(b), a.max(b)))
+            self.walls.get(edge.fix().as_undirected().index()).is_some_and(|&wall| wall)
         };
         for edge in self.cdt.convex_hull() {
             // Of the two sides of a hull edge one is the outer face.
@@ -387,54 +482,96 @@ impl<E: Shape> Work<'_, E> {
         inner.map(|face| face.vertices().map(|v| v.data().node)).collect()
     }
 
-    /// Parameters where a triangle or a side between two triangles is off the surface by more than the
-    /// chord tolerance: for each triangle the worst. What was near enough before is not looked at again.
-    fn too_coarse(&mut self, tolerances: &Tolerances) -> Vec<[f64; 2]> {
-        let inside = self.inside();
+    /// Where a triangle or a side between two triangles is off the surface by more than the chord tolerance: for
+    /// each of the given triangles the worst place.
+    fn too_coarse(&mut self, open: &[FixedFaceHandle<InnerTag>], tolerances: &Tolerances) -> Vec<Wanted> {
         let mut wanted = Vec::new();
-        let Self { cdt, nodes, settled, sides: known, shape, .. } = self;
-        let smallest = SMALLEST * tolerances.chord;
-        for face in cdt.inner_faces().filter(|face| inside[face.fix().index()]) {
-            let corners = face.vertices().map(|v| v.data().node);
-            let mut key = corners;
-            key.sort_unstable();
-            if settled.contains(&key) {
-                continue;
-            }
-            let [a, b, c] = corners.map(|node| nodes[node as usize]);
-            let sides = [(b.point - a.point).norm(), (c.point - b.point).norm(), (a.point - c.point).norm()];
-            if sides.iter().all(|&side| side < smallest) {
-                settled.insert(key);
+        let reach = self.shape.reach();
+        let Self { cdt, nodes, sides: known, shape, .. } = self;
+        known.resize(cdt.num_undirected_edges(), ([u32::MAX; 2], 0.0));
+        let chord = tolerances.chord;
+        let in_doubt = |off: f64| off > DOUBT[0] * chord && off < DOUBT[1] * chord;
+        for &face in open {
+            let face = cdt.face(face);
+            let vertices = face.vertices();
+            let [a, b, c] = vertices.map(|v| &nodes[v.data().node as usize]);
+            let lengths =
+                [(b.point - a.point).norm(), (c.point - b.point).norm(), (a.point - c.point).norm()];
+            if lengths.iter().all(|&length| length < SMALLEST * chord) {
                 continue;
             }
             let middle = [0, 1].map(|k| (a.uv[k] + b.uv[k] + c.uv[k]) / 3.0);
             let normal = (b.point - a.point).cross(&(c.point - a.point)).try_normalize(0.0);
-            let off = normal.map_or(0.0, |n| (shape.point(middle[0], middle[1]) - a.point).dot(&n).abs());
+            let bulge = [(a, b), (b, c), (c, a)].map(|(a, b)| bulge(a, b, reach));
+            let mut off = match bulge {
+                // Of what vanishes at the corners and is quadratic, 4/9 of the sum at the sides' middles.
+                [Some(first), Some(second), Some(third)] => {
+                    normal.map_or(0.0, |n| 4.0 / 9.0 * (first + second + third).dot(&n).abs())
+                }
+                _ => chord,
+            };
+            if in_doubt(off) {
+                off = normal.map_or(0.0, |n| (shape.point(middle[0], middle[1]) - a.point).dot(&n).abs());
+            }
             let mut worst = (off, middle);
             for edge in face.adjacent_edges().into_iter().filter(|edge| !edge.is_constraint_edge()) {
                 let mut ends = edge.vertices().map(|v| v.data().node);
                 ends.sort_unstable();
-                let [from, to] = ends.map(|node| nodes[node as usize]);
+                let [from, to] = ends.map(|node| &nodes[node as usize]);
                 let middle = [0, 1].map(|k| 0.5 * (from.uv[k] + to.uv[k]));
-                let off = *known.entry(ends).or_insert_with(|| {
-                    off_segment(&shape.point(middle[0], middle[1]), &from.point, &to.point)
-                });
-                if off > worst.0 {
-                    worst = (off, middle);
+                let slot = &mut known[edge.fix().as_undirected().index()];
+                if slot.0 != ends {
+                    let mut off = off_chord(from, to, reach).unwrap_or(chord);
+                    if in_doubt(off) {
+                        off = off_segment(&shape.point(middle[0], middle[1]), &from.point, &to.point);
+                    }
+                    *slot = (ends, off);
+                }
+                if slot.1 > worst.0 {
+                    worst = (slot.1, middle);
                 }
             }
-            if worst.0 > tolerances.chord {
-                wanted.push(worst.1);
-            } else {
-                settled.insert(key);
+            if worst.0 > chord {
+                wanted.push(Wanted { uv: worst.1, near: vertices[0].fix() });
             }
         }
         wanted
     }
+}
 
-    fn point(&self, uv: [f64; 2]) -> Point3<f64> {
-        self.shape.point(uv[0], uv[1])
+/// Whether a cubic with the tangents of its ends says anything of the surface between two nodes.
+fn is_within(from: &Node, to: &Node, reach: [f64; 2]) -> bool {
+    (0..2).all(|k| (to.uv[k] - from.uv[k]).abs() <= reach[k])
+}
+
+/// Tangents of the surface at two nodes along the straight way from one to the other in the parameter plane.
+fn along(from: &Node, to: &Node) -> [Vector3<f64>; 2] {
+    let way = [0, 1].map(|k| to.uv[k] - from.uv[k]);
+    [from, to].map(|node| node.tangents[0] * way[0] + node.tangents[1] * way[1])
+}
+
+/// The middle of the cubic between two nodes, less the middle of its chord.
+fn bulge(from: &Node, to: &Node, reach: [f64; 2]) -> Option<Vector3<f64>> {
+    is_within(from, to, reach).then(|| {
+        let [first, last] = along(from, to);
+        (first - last) / 8.0
+    })
+}
+
+/// Greatest distance of the cubic between two nodes from its chord, at its quarters.
+fn off_chord(from: &Node, to: &Node, reach: [f64; 2]) -> Option<f64> {
+    if !is_within(from, to, reach) {
+        return None;
     }
+    let [first, last] = along(from, to);
+    let chord = to.point - from.point;
+    let square = chord.norm_squared();
+    // Hermite's cubic in Bernstein's form, without what lies along the chord.
+    let quarters = [(9.0, 3.0), (8.0, 8.0), (3.0, 9.0)].map(|(a, b)| (first * a - last * b) / 64.0);
+    let across = |off: Vector3<f64>| {
+        if square > 0.0 { off.norm_squared() - off.dot(&chord).powi(2) / square } else { off.norm_squared() }
+    };
+    Some(quarters.map(across).into_iter().fold(0.0, f64::max).sqrt())
 }
 
 /// Distance of a point of the plane from a segment.

@@ -10,6 +10,7 @@ use super::curve2d;
 use super::error::ReadError;
 use super::placement::{direction3, point2, point3};
 use super::scope::{Scope, entity_name};
+use super::transformation::placing;
 use crate::geometry::{Composite, Curve, Curve2d, Segment, Trimmed};
 use crate::math::Point3;
 use crate::step::entity::Entity;
@@ -226,6 +227,13 @@ pub(super) fn offset(scope: Scope<'_>, view: &EntityView<'_>, nest: Nest<'_>) ->
     let [distance, direction] = view.fields(["distance", "ref_direction"]);
     let direction = direction3(scope, reference(direction, "ref_direction")?)?;
     Ok(Curve::Offset { basis, distance: real(distance, "distance")?, direction })
+}
+
+/// `CURVE_REPLICA` in space: the parent's image under a scale, turn, mirror and shift.
+pub(super) fn replica(scope: Scope<'_>, view: &EntityView<'_>, nest: Nest<'_>) -> Result<Curve, ReadError> {
+    let parent = part(scope, view, "parent_curve", nest)?;
+    let name = view.reference("transformation")?;
+    parent.transformed(&placing(scope, name)?).map_err(|_| ReadError::Coordinates(name))
 }
 
 /// `OFFSET_CURVE_2D`.

@@ -70,6 +70,7 @@ pub(super) fn read_nested(scope: Scope<'_>, name: InstanceName, nest: Nest<'_>) 
         Entity::Polyline => polyline(scope, &view),
         Entity::TrimmedCurve => bounded_curve::trimmed(scope, &view, nest),
         Entity::OffsetCurve3d => bounded_curve::offset(scope, &view, nest),
+        Entity::CurveReplica => bounded_curve::replica(scope, &view, nest),
         _ if view.is(Entity::CompositeCurve) => bounded_curve::composite(scope, &view, nest),
         _ if view.is(Entity::BSplineCurve) => spline(scope, &view).map(Curve::Nurbs),
         _ if view.is(Entity::Curve) => Err(ReadError::NotReadYet),

@@ -1,6 +1,6 @@
 //! Surfaces: ISO 10303-42 chapter 4.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::bounded_curve::{Nest, interval, within};
 use super::curve::{self, Trims, positive};
@@ -9,6 +9,7 @@ use super::error::ReadError;
 use super::placement::{frame, point3, vector3};
 use super::scope::Scope;
 use super::spline::{Form, WrittenKnots, apply_weights, implied_knots};
+use super::transformation::placing;
 use crate::geometry::nurbs::{KnotVector, NurbsSurface};
 use crate::geometry::{Curve, Patch, PatchGrid, Surface};
 use crate::step::entity::Entity;
@@ -30,10 +31,12 @@ fn read_nested(scope: Scope<'_>, name: InstanceName, nest: Nest<'_>) -> Result<S
         Entity::RectangularTrimmedSurface => trimmed(scope, &view, nest),
         Entity::CurveBoundedSurface => Ok(Surface::CurveBounded { basis: basis(scope, &view, nest)? }),
         Entity::RectangularCompositeSurface => composite(scope, &view, nest),
+        Entity::SurfaceReplica => replica(scope, &view, nest),
         Entity::Plane => Ok(Surface::Plane(frame(scope, view.reference("position")?)?)),
         Entity::CylindricalSurface | Entity::SphericalSurface => round(scope, &view),
         Entity::ConicalSurface => cone(scope, &view),
-        Entity::ToroidalSurface | Entity::DegenerateToroidalSurface => torus(scope, &view),
+        Entity::ToroidalSurface => torus(scope, &view),
+        Entity::DegenerateToroidalSurface => degenerate_torus(scope, &view),
         Entity::SurfaceOfLinearExtrusion => {
             let direction = vector3(scope, view.reference("extrusion_axis")?)?;
             Ok(Surface::LinearExtrusion { curve: swept(scope, &view)?, direction })
@@ -75,7 +78,6 @@ fn cone(scope: Scope<'_>, view: &EntityView<'_>) -> Result<Surface, ReadError> {
     Ok(Surface::Cone { frame, radius, semi_angle: radians })
 }
 
-/// A torus; a degenerate one, which meets itself, has the same equation and is bounded by its faces.
 fn torus(scope: Scope<'_>, view: &EntityView<'_>) -> Result<Surface, ReadError> {
     let [position, major, minor] = view.fields(["position", "major_radius", "minor_radius"]);
     Ok(Surface::Torus {
@@ -83,6 +85,18 @@ fn torus(scope: Scope<'_>, view: &EntityView<'_>) -> Result<Surface, ReadError> 
         major_radius: positive(real(major, "major_radius")?, "major_radius")?,
         minor_radius: positive(real(minor, "minor_radius")?, "minor_radius")?,
     })
+}
+
+/// A torus that meets itself on its axis: of the two parts between the poles the one that is asked for.
+fn degenerate_torus(scope: Scope<'_>, view: &EntityView<'_>) -> Result<Surface, ReadError> {
+    let torus = torus(scope, view)?;
+    let Surface::Torus { major_radius, minor_radius, .. } = torus else { return Ok(torus) };
+    if major_radius >= minor_radius {
+        return Ok(torus);
+    }
+    let pole = (-major_radius / minor_radius).acos();
+    let v = if view.boolean("select_outer")? { (-pole, pole) } else { (pole, TAU - pole) };
+    Ok(Surface::Trimmed { basis: Box::new(torus), u: (0.0, TAU), v, forward: [true; 2] })
 }
 
 /// The surface that another is made of; a failure names it.
@@ -137,6 +151,18 @@ fn composite(scope: Scope<'_>, view: &EntityView<'_>, nest: Nest<'_>) -> Result<
         }
     }
     PatchGrid::new(patches, rows).map(Surface::Composite).ok_or(ReadError::Unbounded { attribute })
+}
+
+/// A `SURFACE_REPLICA`: the parent's image under a scale, turn and shift. A mirror turns the normal of the parent's
+/// parametrisation with it, which a plane or a quadric in a right-handed frame cannot follow.
+fn replica(scope: Scope<'_>, view: &EntityView<'_>, nest: Nest<'_>) -> Result<Surface, ReadError> {
+    let parent = part(scope, view, "parent_surface", nest)?;
+    let name = view.reference("transformation")?;
+    let map = placing(scope, name)?;
+    if parent.image_turns_normal(&map) == map.keeps_orientation() {
+        return Err(ReadError::NotReadYet);
+    }
+    parent.transformed(&map).map_err(|_| ReadError::Coordinates(name))
 }
 
 fn swept(scope: Scope<'_>, view: &EntityView<'_>) -> Result<Box<Curve>, ReadError> {

@@ -223,6 +223,36 @@ fn conics_on_surfaces_with_an_angle_and_a_length_keep_their_parameter() {
     assert!((at(FRAC_PI_2).x - FRAC_PI_2).abs() < 1e-13 && (at(FRAC_PI_2).y - 35.0).abs() < 1e-13);
 }
 
+/// Twice the size, the first axis along y, then moved by (10, 0, 1).
+const OPERATOR: &str = "#150=CARTESIAN_TRANSFORMATION_OPERATOR_3D('','','',#151,$,#152,2.,#153);
+    #151=DIRECTION('',(0.,1.,0.));#152=CARTESIAN_POINT('',(10.,0.,1.));#153=DIRECTION('',(0.,0.,1.));";
+
+#[test]
+fn replicas_are_images_of_their_parents() {
+    // (x, y, z) goes to (10 - 2 y, 2 x, 1 + 2 z).
+    let circle = good_curve(&format!("#200=CURVE_REPLICA('',#201,#150);#201=CIRCLE('',#11,3.);{OPERATOR}"));
+    near(circle.point_at(0.0), [10.0, 6.0, 1.0]);
+    near(circle.point_at(FRAC_PI_2), [4.0, 0.0, 1.0]);
+    let replica = "#100=SURFACE_REPLICA('',#101,#150);";
+    let sphere = good_surface(&format!("{replica}#101=SPHERICAL_SURFACE('',#11,1.5);{OPERATOR}"));
+    for (u, v) in [(0.0, 0.0), (2.0, 0.7), (4.0, -1.1)] {
+        assert!(((sphere.point(u, v) - Point3::new(10.0, 0.0, 1.0)).norm() - 3.0).abs() < 1e-12);
+    }
+    near(sphere.point(0.0, 0.0), [10.0, 3.0, 1.0]);
+    // The scale is in the basis vectors of a plane's parameters no more than in a cylinder's.
+    let plane = good_surface(&format!("{replica}#101=PLANE('',#11);{OPERATOR}"));
+    assert!((plane.normal(0.3, 4.0).expect("regular") - Vector3::z()).norm() < 1e-15);
+    near(plane.point(0.0, 0.0), [10.0, 0.0, 1.0]);
+    // Mirrored in z, the normal of the parent's parametrisation comes to point along -z.
+    let mirror =
+        OPERATOR.replace("#153);", "#154);#154=DIRECTION('',(0.,0.,1.));").replace("#151,$,", "#151,#155,")
+            + "#155=DIRECTION('',(1.,0.,0.));";
+    let (found, sink) = surface(&format!("{replica}#101=PLANE('',#11);{mirror}"));
+    assert_eq!((refused(&found), sink[0].code), ("not read yet", "step.not-read-yet"));
+    let (found, _) = surface(&format!("#100=SURFACE_REPLICA('',#100,#150);{OPERATOR}"));
+    assert!(refused(&found).contains("nested too deep"), "{found:?}");
+}
+
 #[test]
 fn geometry_that_is_made_of_itself_ends() {
     let (found, sink) = curve(
