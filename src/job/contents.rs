@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
-use super::measure::{Figures, kind};
+use super::measure::{BodyMeasures, Figures, kind};
 use super::select;
 use super::selector::Selector;
 use crate::brep::FaceId;
@@ -26,6 +26,9 @@ pub struct Contents {
     pub groups: Vec<GroupEntry>,
     /// Counts of dimensions, tolerances, datums, presentations, validation properties and tessellations.
     pub annotations: BTreeMap<&'static str, usize>,
+    /// Volume, area and centroid of each body, where they were asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub bodies: Vec<BodyMeasures>,
     /// Faces that were asked for.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub faces: Vec<FaceEntry>,
@@ -164,6 +167,7 @@ pub fn contents(model: &Model, faces: &[FaceId]) -> Contents {
         tree_cut,
         groups: groups(model),
         annotations,
+        bodies: Vec::new(),
         faces: faces.iter().map(face_entry).collect(),
     }
 }

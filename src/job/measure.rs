@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::brep::mass_properties::{self, Quadrature};
+use crate::brep::{BodyId, BodyKind};
 use crate::geometry::{Carried, Surface};
 use crate::model::{Context, Inventory, Model};
 
@@ -60,6 +62,62 @@ impl Figures {
         let differing = self.counts.keys().map(|name| (name.clone(), count(self, name), count(other, name)));
         differing.filter(|(_, before, after)| before != after).collect()
     }
+}
+
+/// Distance below which points count as one in a file that does not say: a micrometre.
+const UNCERTAINTY_METRES: f64 = 1e-6;
+
+/// Mass properties of one body, in its file units.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct BodyMeasures {
+    /// Its record.
+    pub id: String,
+    /// Volume of a solid; negative where it is turned inside out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub volume: Option<f64>,
+    /// Area of its faces.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub area: Option<f64>,
+    /// Centroid of a solid's volume, else of the area.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub centroid: Option<[f64; 3]>,
+    /// Bound on the error of volume and area by the quadrature's own estimate, relative to each; gaps between
+    /// edges and surfaces are not in it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub relative_error: Option<f64>,
+    /// Why there are no numbers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unknown: Option<String>,
+}
+
+/// Measures every body, in file order.
+#[must_use]
+pub fn measure_bodies(model: &Model) -> Vec<BodyMeasures> {
+    model.brep.bodies.ids().map(|body| measure_body(model, body)).collect()
+}
+
+fn measure_body(model: &Model, body: BodyId) -> BodyMeasures {
+    let id = model.origins.bodies[body].to_string();
+    let mut measures =
+        BodyMeasures { id, volume: None, area: None, centroid: None, relative_error: None, unknown: None };
+    let context = &model.contexts[model.body_context[body]];
+    let said = context.uncertainty.map(|tolerance| tolerance.0);
+    let tolerance = said.unwrap_or(UNCERTAINTY_METRES / context.length.metres);
+    match mass_properties::of_body(&model.brep, body, &Quadrature::exact(tolerance)) {
+        Ok(found) => {
+            let solid = model.brep.bodies[body].kind == BodyKind::Solid;
+            let relative = |error: f64, value: f64| if value == 0.0 { 0.0 } else { error / value.abs() };
+            let area_error = relative(found.area_error(), found.area());
+            let volume_error = if solid { relative(found.volume_error(), found.volume()) } else { 0.0 };
+            let centroid = if solid { found.centroid() } else { found.area_centroid() };
+            measures.volume = solid.then(|| found.volume());
+            measures.area = Some(found.area());
+            measures.centroid = Some(centroid.coords.into());
+            measures.relative_error = Some(area_error.max(volume_error));
+        }
+        Err(error) => measures.unknown = Some(error.to_string()),
+    }
+    measures
 }
 
 fn distinct_units(contexts: &[Context]) -> Vec<String> {

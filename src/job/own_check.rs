@@ -8,6 +8,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::brep::check::{self, Finding};
+use crate::diagnostic::Severity;
 use crate::document::Document;
 use crate::model::{Model, Origin};
 
@@ -24,6 +25,8 @@ const SAME_SIZE: f64 = 1.25;
 pub struct OwnFinding {
     /// Stable name of the fact: `edge-off-surface`.
     pub code: String,
+    /// `error`, or `warning` for what a sound part may have.
+    pub severity: String,
     /// Entity concerned, as the file names it.
     pub entity: String,
     /// Line of its record, from 1.
@@ -34,6 +37,14 @@ pub struct OwnFinding {
     /// By how much, in file units, where the fact is one of distance.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub size: Option<f64>,
+}
+
+impl OwnFinding {
+    /// Whether programs stumble over it.
+    #[must_use]
+    pub fn is_error(&self) -> bool {
+        self.severity == Severity::Error.as_str()
+    }
 }
 
 impl std::fmt::Display for OwnFinding {
@@ -92,6 +103,7 @@ fn describe(document: &Document, model: &Model, finding: &Finding) -> OwnFinding
     let place = finding.place();
     OwnFinding {
         code: finding.code().to_owned(),
+        severity: finding.severity().as_str().to_owned(),
         entity: origin.to_string(),
         line: document.line_of(origin),
         place: [place.x, place.y, place.z],
@@ -110,5 +122,15 @@ fn origin(model: &Model, finding: &Finding) -> Origin {
         Finding::FreeEdge(f) => origins.edges[f.edge],
         Finding::OneWayEdge(f) => origins.edges[f.edge],
         Finding::CrowdedEdge(f) => origins.edges[f.edge],
+        Finding::OpenShell(f) => origins.shells[f.shell],
+        Finding::TurnedFace(f) => origins.faces[f.face],
+        Finding::Gap(f) => origins.coedges[f.coedge],
+        Finding::DegenerateEdge(f) => origins.edges[f.edge],
+        Finding::SelfCrossingLoop(f) => origins.loops[f.bound],
+        Finding::OverlappingBounds(f) => origins.loops[f.bound],
+        Finding::SliverFace(f) => origins.faces[f.face],
+        Finding::MissingSeam(f) => origins.faces[f.face],
+        Finding::InconsistentSense(f) => origins.faces[f.face],
+        Finding::SolidInsideOut(f) => origins.bodies[f.body],
     }
 }

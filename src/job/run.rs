@@ -227,7 +227,8 @@ fn read_again(
         // Of the operations, not of the part's box: a part of an assembly may grow while the box stays.
         let growth = job.operation.iter().map(Operation::growth).product();
         let own = own_findings(&read.document, &model, growth);
-        findings.extend(new_findings(&wanted.findings, &own, growth).map(ToString::to_string));
+        let new = new_findings(&wanted.findings, &own, growth).filter(|finding| finding.is_error());
+        findings.extend(new.map(ToString::to_string));
         report.findings = own;
     }
     report.after = Some(after);

@@ -5,17 +5,24 @@
 //!
 //! Geometry that was not read is passed over: that it is missing is said elsewhere.
 
+mod crossing;
+mod degenerate_edge;
 mod edge_off_surface;
 mod edge_use;
+mod inside_out;
 mod open_loop;
 mod orientation;
 mod pcurve_off_edge;
 mod vertex_off_edge;
 
 use super::{BodyId, Brep, FaceId, LoopSampling, ParameterLoop, parameter_loops};
+use crate::diagnostic::Severity;
 use crate::math::Point3;
+pub use crossing::{OverlappingBounds, SelfCrossingLoop};
+pub use degenerate_edge::{DegenerateEdge, Gap};
 pub use edge_off_surface::EdgeOffSurface;
-pub use edge_use::{CrowdedEdge, FreeEdge, OneWayEdge};
+pub use edge_use::{CrowdedEdge, FreeEdge, OneWayEdge, OpenShell, TurnedFace};
+pub use inside_out::{InconsistentSense, MissingSeam, SliverFace, SolidInsideOut};
 pub use open_loop::OpenLoop;
 pub use orientation::{BoundKind, ReversedLoop};
 pub use pcurve_off_edge::PcurveOffEdge;
@@ -40,6 +47,26 @@ pub enum Finding {
     OneWayEdge(OneWayEdge),
     /// More than two faces of a shell meet at an edge.
     CrowdedEdge(CrowdedEdge),
+    /// A shell that is said to be closed has free edges.
+    OpenShell(OpenShell),
+    /// All neighbours of a face run against it.
+    TurnedFace(TurnedFace),
+    /// The curves of two edges end apart, though their vertex is one.
+    Gap(Gap),
+    /// An edge is shorter than the tolerance.
+    DegenerateEdge(DegenerateEdge),
+    /// A loop crosses itself.
+    SelfCrossingLoop(SelfCrossingLoop),
+    /// Two bounds of a face cross, or an inner one lies outside the outer one.
+    OverlappingBounds(OverlappingBounds),
+    /// A face is narrower than the tolerance.
+    SliverFace(SliverFace),
+    /// Bounds run round a surface and leave a side open where it has no end.
+    MissingSeam(MissingSeam),
+    /// The bounds of a face leave it on the other side than its sense says.
+    InconsistentSense(InconsistentSense),
+    /// A solid's shells enclose a negative volume.
+    SolidInsideOut(SolidInsideOut),
 }
 
 impl Finding {
@@ -55,6 +82,16 @@ impl Finding {
             Self::FreeEdge(_) => "free-edge",
             Self::OneWayEdge(_) => "one-way-edge",
             Self::CrowdedEdge(_) => "crowded-edge",
+            Self::OpenShell(_) => "open-shell",
+            Self::TurnedFace(_) => "turned-face",
+            Self::Gap(_) => "gap",
+            Self::DegenerateEdge(_) => "degenerate-edge",
+            Self::SelfCrossingLoop(_) => "self-crossing-loop",
+            Self::OverlappingBounds(_) => "overlapping-bounds",
+            Self::SliverFace(_) => "sliver-face",
+            Self::MissingSeam(_) => "missing-seam",
+            Self::InconsistentSense(_) => "inconsistent-sense",
+            Self::SolidInsideOut(_) => "solid-inside-out",
         }
     }
 
@@ -70,6 +107,25 @@ impl Finding {
             Self::FreeEdge(f) => f.place,
             Self::OneWayEdge(f) => f.place,
             Self::CrowdedEdge(f) => f.place,
+            Self::OpenShell(f) => f.place,
+            Self::TurnedFace(f) => f.place,
+            Self::Gap(f) => f.place,
+            Self::DegenerateEdge(f) => f.place,
+            Self::SelfCrossingLoop(f) => f.place,
+            Self::OverlappingBounds(f) => f.place,
+            Self::SliverFace(f) => f.place,
+            Self::MissingSeam(f) => f.place,
+            Self::InconsistentSense(f) => f.place,
+            Self::SolidInsideOut(f) => f.place,
+        }
+    }
+
+    /// Whether programs stumble over it: an error. A warning is a fact that a sound part may have.
+    #[must_use]
+    pub fn severity(&self) -> Severity {
+        match self {
+            Self::DegenerateEdge(_) | Self::SliverFace(_) => Severity::Warning,
+            _ => Severity::Error,
         }
     }
 
@@ -81,7 +137,10 @@ impl Finding {
             Self::EdgeOffSurface(f) => Some(f.distance),
             Self::VertexOffEdge(f) => Some(f.distance),
             Self::PcurveOffEdge(f) => Some(f.distance),
-            Self::ReversedLoop(_) | Self::FreeEdge(_) | Self::OneWayEdge(_) | Self::CrowdedEdge(_) => None,
+            Self::Gap(f) => Some(f.distance),
+            Self::DegenerateEdge(f) => Some(f.length),
+            Self::SliverFace(f) => Some(f.width),
+            _ => None,
         }
     }
 }
@@ -99,7 +158,9 @@ pub fn check(brep: &Brep, tolerance: &dyn Fn(BodyId) -> f64) -> Vec<Finding> {
             for &face in faces {
                 check_face(brep, face, tolerance, &mut findings);
             }
+            degenerate_edge::check(brep, faces, tolerance, &mut findings);
         }
+        inside_out::check_body(brep, id, tolerance, &mut findings);
     }
     findings
 }
@@ -112,4 +173,7 @@ pub fn check_face(brep: &Brep, face: FaceId, tolerance: f64, findings: &mut Vec<
         parameter_loops(brep, face, &LoopSampling::of_tolerance(tolerance)).unwrap_or_default();
     edge_off_surface::check(face, &loops, tolerance, findings);
     orientation::check(brep, face, &loops, findings);
+    degenerate_edge::gaps(brep, face, tolerance, findings);
+    crossing::check(brep, face, &loops, tolerance, findings);
+    inside_out::check_face(brep, face, &loops, tolerance, findings);
 }

@@ -1,0 +1,199 @@
+//! Facts: a loop does not cross itself, and the bounds of a face neither cross each other nor lie outside the
+//! outer one.
+
+use super::Finding;
+use crate::brep::{Brep, EdgeId, FaceId, LoopId, LoopPoint, ParameterLoop, edge_range};
+use crate::geometry::{Curve, Surface};
+use crate::math::Point3;
+
+/// A loop crosses itself.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SelfCrossingLoop {
+    /// The face.
+    pub face: FaceId,
+    /// The loop.
+    pub bound: LoopId,
+    /// Where.
+    pub place: Point3<f64>,
+}
+
+/// Two bounds of a face cross, or an inner one lies outside the outer one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OverlappingBounds {
+    /// The face.
+    pub face: FaceId,
+    /// One of the loops, an inner one.
+    pub bound: LoopId,
+    /// Where.
+    pub place: Point3<f64>,
+}
+
+/// Pairs of chords that are compared on one face at most; a bound for hostile files.
+const MAX_PAIRS: usize = 1 << 22;
+/// Steps towards the point where two edges meet.
+const STEPS: usize = 24;
+/// Distance from the ends of edges, in tolerances, within which edges may meet.
+const AT_ENDS: f64 = 10.0;
+
+/// Part of a chord at its ends where nothing crosses.
+const INSIDE: f64 = 1e-9;
+/// Sine of the angle below which edges run along each other and do not cross.
+const ALONG: f64 = 1e-3;
+
+/// A chord of a loop's polygon.
+struct Chord {
+    of: usize,
+    from: LoopPoint,
+    to: (f64, f64),
+    /// Parameter of the edge's curve at the end.
+    t_end: f64,
+}
+
+/// Looks at the loops of a face.
+pub(super) fn check(
+    brep: &Brep,
+    face: FaceId,
+    loops: &[ParameterLoop],
+    tolerance: f64,
+    findings: &mut Vec<Finding>,
+) {
+    let mut chords: Vec<Chord> =
+        loops.iter().enumerate().flat_map(|(of, points)| chords_of(brep, of, points)).collect();
+    chords.sort_by(|a, b| a.low().total_cmp(&b.low()));
+    let mut told: Vec<(usize, usize)> = Vec::new();
+    let mut pairs = 0;
+    for (i, a) in chords.iter().enumerate() {
+        for b in chords[i + 1..].iter().take_while(|b| b.low() <= a.high()) {
+            pairs += 1;
+            if pairs > MAX_PAIRS {
+                return;
+            }
+            let key = (a.of.min(b.of), a.of.max(b.of));
+            if told.contains(&key) {
+                continue;
+            }
+            if let Some(place) = meeting(brep, a, b, tolerance) {
+                told.push(key);
+                let bound = loops[key.1].of;
+                findings.push(if key.0 == key.1 {
+                    Finding::SelfCrossingLoop(SelfCrossingLoop { face, bound, place })
+                } else {
+                    Finding::OverlappingBounds(OverlappingBounds { face, bound, place })
+                });
+            }
+        }
+    }
+    outside(brep, face, loops, &told, findings);
+}
+
+fn chords_of(brep: &Brep, of: usize, points: &ParameterLoop) -> Vec<Chord> {
+    let mut chords = Vec::new();
+    let points = &points.points;
+    let mut first = 0;
+    for i in 0..points.len().saturating_sub(1) {
+        let (from, to) = (points[i], points[i + 1]);
+        if from.coedge != points[first].coedge {
+            first = i;
+        }
+        let t_end = if to.coedge == from.coedge {
+            to.t
+        } else {
+            // The chord's end counts by the next edge's parameter; this edge ends where it did not begin.
+            let Some(range) = edge_range(brep, brep.coedges[from.coedge].edge) else { continue };
+            let began = points[first].t;
+            if (began - range.start).abs() <= (began - range.end).abs() { range.end } else { range.start }
+        };
+        chords.push(Chord { of, from, to: (to.u, to.v), t_end });
+    }
+    chords
+}
+
+impl Chord {
+    fn low(&self) -> f64 {
+        self.from.u.min(self.to.0)
+    }
+
+    fn high(&self) -> f64 {
+        self.from.u.max(self.to.0)
+    }
+}
+
+/// The point where two chords, and the edges behind them, cross.
+fn meeting(brep: &Brep, a: &Chord, b: &Chord, tolerance: f64) -> Option<Point3<f64>> {
+    let (edge_a, edge_b) = (brep.coedges[a.from.coedge].edge, brep.coedges[b.from.coedge].edge);
+    if edge_a == edge_b {
+        return None;
+    }
+    let (p, r) = ((a.from.u, a.from.v), (a.to.0 - a.from.u, a.to.1 - a.from.v));
+    let (q, s) = ((b.from.u, b.from.v), (b.to.0 - b.from.u, b.to.1 - b.from.v));
+    let cross = |x: (f64, f64), y: (f64, f64)| x.0 * y.1 - x.1 * y.0;
+    let away = (q.0 - p.0, q.1 - p.1);
+    let (share_a, share_b) = (cross(away, s) / cross(r, s), cross(away, r) / cross(r, s));
+    // Neighbours share an end; what only touches does not cross.
+    let within = |x: f64| x > INSIDE && x < 1.0 - INSIDE;
+    if !(within(share_a) && within(share_b)) {
+        return None;
+    }
+    let t = a.from.t + share_a * (a.t_end - a.from.t);
+    let u = b.from.t + share_b * (b.t_end - b.from.t);
+    edges_meet(brep, (edge_a, t), (edge_b, u), tolerance)
+}
+
+/// The point near given parameters where two edges meet away from their ends; chords may cross where curves do
+/// not.
+fn edges_meet(brep: &Brep, a: (EdgeId, f64), b: (EdgeId, f64), tolerance: f64) -> Option<Point3<f64>> {
+    let (curve_a, curve_b) = (brep.curve_of(a.0).read()?, brep.curve_of(b.0).read()?);
+    let (mut t, mut u) = (a.1, b.1);
+    for _ in 0..STEPS {
+        u = curve_b.parameter_of(&curve_a.point_wrapped(t), Some(u));
+        t = curve_a.parameter_of(&curve_b.point_wrapped(u), Some(t));
+    }
+    let (p, q) = (curve_a.point_wrapped(t), curve_b.point_wrapped(u));
+    let ends = [a.0, b.0].map(|edge| [brep.edges[edge].start, brep.edges[edge].end]);
+    let at_end = ends.iter().flatten().any(|&v| (brep.vertices[v].point - p).norm() <= AT_ENDS * tolerance);
+    let on_edge = |edge: EdgeId, t: f64| {
+        edge_range(brep, edge).is_some_and(|r| t >= r.start.min(r.end) && t <= r.start.max(r.end))
+    };
+    let tangent = |curve: &Curve, t: f64| curve.derivatives(curve.wrapped_parameter(t))[1];
+    let (along_a, along_b) = (tangent(curve_a, t), tangent(curve_b, u));
+    let crosses = along_a.cross(&along_b).norm() > ALONG * along_a.norm() * along_b.norm();
+    let meet = (p - q).norm() <= tolerance && on_edge(a.0, t) && on_edge(b.0, u);
+    (meet && crosses && !at_end).then_some(p)
+}
+
+/// Inner bounds all of whose points lie outside the outer one.
+fn outside(
+    brep: &Brep,
+    face: FaceId,
+    loops: &[ParameterLoop],
+    told: &[(usize, usize)],
+    findings: &mut Vec<Finding>,
+) {
+    let closed = brep.surface_of(face).read().is_none_or(|surface| {
+        matches!(surface, Surface::Sphere { .. }) || matches!(surface.periods(), (Some(_), _) | (_, Some(_)))
+    });
+    let size = |i: &usize| loops[*i].signed_area().map_or(0.0, f64::abs);
+    let biggest = (0..loops.len()).max_by(|a, b| size(a).total_cmp(&size(b)));
+    let Some(outer) = biggest.filter(|_| !closed && loops.iter().all(|l| l.winding == (0.0, 0.0))) else {
+        return;
+    };
+    for (i, bound) in loops.iter().enumerate() {
+        let crosses = told.iter().any(|&(a, b)| a != b && (a == i || b == i));
+        if i == outer || bound.points.is_empty() || crosses {
+            continue;
+        }
+        if !bound.points.iter().any(|p| is_inside(&loops[outer], (p.u, p.v))) {
+            let place = bound.points[0].point;
+            findings.push(Finding::OverlappingBounds(OverlappingBounds { face, bound: bound.of, place }));
+        }
+    }
+}
+
+fn is_inside(polygon: &ParameterLoop, (u, v): (f64, f64)) -> bool {
+    let points = &polygon.points;
+    let crossings = (0..points.len()).filter(|&i| {
+        let (a, b) = (&points[i], &points[(i + 1) % points.len()]);
+        (a.v > v) != (b.v > v) && u < a.u + (v - a.v) / (b.v - a.v) * (b.u - a.u)
+    });
+    crossings.count() % 2 == 1
+}
