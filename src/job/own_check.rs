@@ -2,7 +2,7 @@
 //!
 //! A finding says what the file says; it is compared, never repaired.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -10,7 +10,8 @@ use serde::Serialize;
 use crate::brep::check::{self, Finding};
 use crate::diagnostic::Severity;
 use crate::document::Document;
-use crate::model::{Model, Origin};
+use crate::brep::{Arena, BodyId, FaceId, VertexId};
+use crate::model::{ChangeSet, Model, Origin};
 
 /// Distance below which points count as one in a file that does not say: a micrometre, finer than any
 /// exporter's habit and coarser than the digits that they write.
@@ -65,13 +66,55 @@ impl std::fmt::Display for OwnFinding {
 /// stretches its gaps with everything else.
 #[must_use]
 pub fn own_findings(document: &Document, model: &Model, growth: f64) -> Vec<OwnFinding> {
-    let tolerance = |body| {
-        let context = &model.contexts[model.body_context[body]];
-        let said = context.uncertainty.map(|tolerance| tolerance.0);
-        growth * said.unwrap_or(UNCERTAINTY_METRES / context.length.metres)
-    };
-    let findings = check::check(&model.brep, &tolerance);
+    let findings = check::check(&model.brep, &|body| growth * tolerance(model, body));
     findings.iter().map(|finding| describe(document, model, finding)).collect()
+}
+
+/// As [`own_findings`], of some faces and their shells: for what an operation has changed.
+#[must_use]
+pub fn findings_of_faces(
+    document: &Document,
+    model: &Model,
+    faces: &BTreeSet<Origin>,
+    growth: f64,
+) -> Vec<OwnFinding> {
+    let chosen = model.origins.faces.iter().filter(|(_, origin)| faces.contains(origin));
+    let chosen: BTreeSet<FaceId> = chosen.map(|(face, _)| face).collect();
+    let findings = check::check_faces(&model.brep, &chosen, &|body| growth * tolerance(model, body));
+    findings.iter().map(|finding| describe(document, model, finding)).collect()
+}
+
+/// Distance within which points of a body count as one, in its file units.
+fn tolerance(model: &Model, body: BodyId) -> f64 {
+    let context = &model.contexts[model.body_context[body]];
+    let said = context.uncertainty.map(|tolerance| tolerance.0);
+    said.unwrap_or(UNCERTAINTY_METRES / context.length.metres)
+}
+
+/// Faces whose geometry or border a change set touches, and those that share an edge with them.
+#[must_use]
+pub fn touched(model: &Model, changes: &ChangeSet) -> BTreeSet<Origin> {
+    let brep = &model.brep;
+    let faces_of_edges = brep.faces_of_edges();
+    let mut uses: Arena<VertexId, Vec<FaceId>> = brep.vertices.iter().map(|_| Vec::new()).collect();
+    if !changes.points.is_empty() {
+        for (edge, of) in brep.edges.iter() {
+            for vertex in [of.start, of.end] {
+                uses[vertex].extend(&faces_of_edges[edge]);
+            }
+        }
+    }
+    let mut faces: BTreeSet<FaceId> = changes.surfaces.keys().copied().collect();
+    faces.extend(changes.curves.keys().flat_map(|&edge| &faces_of_edges[edge]));
+    faces.extend(changes.pcurves.keys().map(|&coedge| brep.loops[brep.coedges[coedge].in_loop].face));
+    faces.extend(changes.points.keys().flat_map(|&vertex| &uses[vertex]));
+    let neighbours: Vec<FaceId> = faces
+        .iter()
+        .flat_map(|&face| brep.coedges_of(face))
+        .flat_map(|coedge| faces_of_edges[brep.coedges[coedge].edge].iter().copied())
+        .collect();
+    faces.extend(neighbours);
+    faces.into_iter().map(|face| model.origins.faces[face]).collect()
 }
 
 /// Findings of a result that its input does not have: another fact, the same on another record, or one that

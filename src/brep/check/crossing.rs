@@ -2,7 +2,8 @@
 //! outer one.
 
 use super::Finding;
-use crate::brep::{Brep, EdgeId, FaceId, LoopId, LoopPoint, ParameterLoop, edge_range};
+use super::survey::Survey;
+use crate::brep::{Brep, EdgeId, FaceId, LoopId, LoopPoint, ParameterLoop};
 use crate::geometry::{Curve, Surface};
 use crate::math::Point3;
 
@@ -30,6 +31,9 @@ pub struct OverlappingBounds {
 
 /// Pairs of chords that are compared on one face at most; a bound for hostile files.
 const MAX_PAIRS: usize = 1 << 22;
+/// Pairs of chords that cross on one face whose edges are searched at most: edges that run along each other have
+/// many.
+const MAX_NEAR: usize = 64;
 /// Steps towards the point where two edges meet.
 const STEPS: usize = 24;
 /// Distance from the ends of edges, in tolerances, within which edges may meet.
@@ -51,17 +55,17 @@ struct Chord {
 
 /// Looks at the loops of a face.
 pub(super) fn check(
-    brep: &Brep,
+    survey: &Survey<'_>,
     face: FaceId,
     loops: &[ParameterLoop],
     tolerance: f64,
     findings: &mut Vec<Finding>,
 ) {
     let mut chords: Vec<Chord> =
-        loops.iter().enumerate().flat_map(|(of, points)| chords_of(brep, of, points)).collect();
+        loops.iter().enumerate().flat_map(|(of, points)| chords_of(survey, of, points)).collect();
     chords.sort_by(|a, b| a.low().total_cmp(&b.low()));
     let mut told: Vec<(usize, usize)> = Vec::new();
-    let mut pairs = 0;
+    let (mut pairs, mut near) = (0, 0);
     for (i, a) in chords.iter().enumerate() {
         for b in chords[i + 1..].iter().take_while(|b| b.low() <= a.high()) {
             pairs += 1;
@@ -69,10 +73,12 @@ pub(super) fn check(
                 return;
             }
             let key = (a.of.min(b.of), a.of.max(b.of));
-            if told.contains(&key) {
+            if told.contains(&key) || near >= MAX_NEAR {
                 continue;
             }
-            if let Some(place) = meeting(brep, a, b, tolerance) {
+            let Some(crossing) = chords_cross(survey.brep, a, b) else { continue };
+            near += 1;
+            if let Some(place) = edges_meet(survey, crossing.0, crossing.1, tolerance) {
                 told.push(key);
                 let bound = loops[key.1].of;
                 findings.push(if key.0 == key.1 {
@@ -83,10 +89,10 @@ pub(super) fn check(
             }
         }
     }
-    outside(brep, face, loops, &told, findings);
+    outside(survey.brep, face, loops, &told, findings);
 }
 
-fn chords_of(brep: &Brep, of: usize, points: &ParameterLoop) -> Vec<Chord> {
+fn chords_of(survey: &Survey<'_>, of: usize, points: &ParameterLoop) -> Vec<Chord> {
     let mut chords = Vec::new();
     let points = &points.points;
     let mut first = 0;
@@ -99,7 +105,8 @@ fn chords_of(brep: &Brep, of: usize, points: &ParameterLoop) -> Vec<Chord> {
             to.t
         } else {
             // The chord's end counts by the next edge's parameter; this edge ends where it did not begin.
-            let Some(range) = edge_range(brep, brep.coedges[from.coedge].edge) else { continue };
+            let edge = survey.brep.coedges[from.coedge].edge;
+            let Some(range) = survey.range(edge) else { continue };
             let began = points[first].t;
             if (began - range.start).abs() <= (began - range.end).abs() { range.end } else { range.start }
         };
@@ -118,8 +125,16 @@ impl Chord {
     }
 }
 
-/// The point where two chords, and the edges behind them, cross.
-fn meeting(brep: &Brep, a: &Chord, b: &Chord, tolerance: f64) -> Option<Point3<f64>> {
+/// An edge and a parameter on its curve.
+type OnEdge = (EdgeId, f64);
+
+/// Where two chords of different edges cross.
+fn chords_cross(brep: &Brep, a: &Chord, b: &Chord) -> Option<(OnEdge, OnEdge)> {
+    let (a_low, a_high) = (a.from.v.min(a.to.1), a.from.v.max(a.to.1));
+    let (b_low, b_high) = (b.from.v.min(b.to.1), b.from.v.max(b.to.1));
+    if a_low > b_high || b_low > a_high {
+        return None;
+    }
     let (edge_a, edge_b) = (brep.coedges[a.from.coedge].edge, brep.coedges[b.from.coedge].edge);
     if edge_a == edge_b {
         return None;
@@ -136,12 +151,13 @@ fn meeting(brep: &Brep, a: &Chord, b: &Chord, tolerance: f64) -> Option<Point3<f
     }
     let t = a.from.t + share_a * (a.t_end - a.from.t);
     let u = b.from.t + share_b * (b.t_end - b.from.t);
-    edges_meet(brep, (edge_a, t), (edge_b, u), tolerance)
+    Some(((edge_a, t), (edge_b, u)))
 }
 
 /// The point near given parameters where two edges meet away from their ends; chords may cross where curves do
 /// not.
-fn edges_meet(brep: &Brep, a: (EdgeId, f64), b: (EdgeId, f64), tolerance: f64) -> Option<Point3<f64>> {
+fn edges_meet(survey: &Survey<'_>, a: OnEdge, b: OnEdge, tolerance: f64) -> Option<Point3<f64>> {
+    let brep = survey.brep;
     let (curve_a, curve_b) = (brep.curve_of(a.0).read()?, brep.curve_of(b.0).read()?);
     let (mut t, mut u) = (a.1, b.1);
     for _ in 0..STEPS {
@@ -152,7 +168,7 @@ fn edges_meet(brep: &Brep, a: (EdgeId, f64), b: (EdgeId, f64), tolerance: f64) -
     let ends = [a.0, b.0].map(|edge| [brep.edges[edge].start, brep.edges[edge].end]);
     let at_end = ends.iter().flatten().any(|&v| (brep.vertices[v].point - p).norm() <= AT_ENDS * tolerance);
     let on_edge = |edge: EdgeId, t: f64| {
-        edge_range(brep, edge).is_some_and(|r| t >= r.start.min(r.end) && t <= r.start.max(r.end))
+        survey.range(edge).is_some_and(|r| t >= r.start.min(r.end) && t <= r.start.max(r.end))
     };
     let tangent = |curve: &Curve, t: f64| curve.derivatives(curve.wrapped_parameter(t))[1];
     let (along_a, along_b) = (tangent(curve_a, t), tangent(curve_b, u));

@@ -1,7 +1,8 @@
 //! Facts: an edge is longer than the tolerance, and edges that follow each other in a loop end at one place.
 
 use super::Finding;
-use crate::brep::{Brep, CoedgeId, EdgeId, EdgeSampling, FaceId, edge_range, sample_edge};
+use super::survey::Survey;
+use crate::brep::{Brep, CoedgeId, EdgeId, FaceId};
 use crate::math::Point3;
 use std::collections::BTreeSet;
 
@@ -31,11 +32,13 @@ pub struct Gap {
 const BOTH_ENDS: f64 = 2.0;
 
 /// Looks at the edges of some faces, each once.
-pub(super) fn check(brep: &Brep, faces: &[FaceId], tolerance: f64, findings: &mut Vec<Finding>) {
+pub(super) fn check(survey: &Survey<'_>, faces: &[FaceId], tolerance: f64, findings: &mut Vec<Finding>) {
+    let brep = survey.brep;
     let edges: BTreeSet<EdgeId> =
         faces.iter().flat_map(|&face| brep.coedges_of(face)).map(|c| brep.coedges[c].edge).collect();
     for edge in edges {
-        let Some(points) = sample_edge(brep, edge, &EdgeSampling::default()) else { continue };
+        let Some(sampled) = survey.edge(edge) else { continue };
+        let points = &sampled.points;
         let length: f64 = points.windows(2).map(|w| (w[1].point - w[0].point).norm()).sum();
         if length <= tolerance {
             let place = points[0].point;
@@ -45,10 +48,11 @@ pub(super) fn check(brep: &Brep, faces: &[FaceId], tolerance: f64, findings: &mu
 }
 
 /// Looks at the loops of a face.
-pub(super) fn gaps(brep: &Brep, face: FaceId, tolerance: f64, findings: &mut Vec<Finding>) {
+pub(super) fn gaps(survey: &Survey<'_>, face: FaceId, tolerance: f64, findings: &mut Vec<Finding>) {
+    let brep = survey.brep;
     for &bound in &brep.faces[face].loops {
         let coedges = &brep.loops[bound].coedges;
-        let ends: Vec<Option<[Point3<f64>; 2]>> = coedges.iter().map(|&c| curve_ends(brep, c)).collect();
+        let ends: Vec<Option<[Point3<f64>; 2]>> = coedges.iter().map(|&c| curve_ends(survey, c)).collect();
         for i in 0..coedges.len() {
             let next = (i + 1) % coedges.len();
             let (Some([_, end]), Some([start, _])) = (ends[i], ends[next]) else { continue };
@@ -61,12 +65,11 @@ pub(super) fn gaps(brep: &Brep, face: FaceId, tolerance: f64, findings: &mut Vec
 }
 
 /// Ends of the curve of an edge, in the direction of its use.
-fn curve_ends(brep: &Brep, coedge: CoedgeId) -> Option<[Point3<f64>; 2]> {
-    let of = &brep.coedges[coedge];
-    let range = edge_range(brep, of.edge)?;
-    let curve = brep.curve_of(of.edge).read()?;
-    let (from, to) = if of.forward { (range.start, range.end) } else { (range.end, range.start) };
-    Some([curve.point_wrapped(from), curve.point_wrapped(to)])
+fn curve_ends(survey: &Survey<'_>, coedge: CoedgeId) -> Option<[Point3<f64>; 2]> {
+    let of = &survey.brep.coedges[coedge];
+    let points = &survey.edge(of.edge)?.points;
+    let (start, end) = (points.first()?.point, points.last()?.point);
+    Some(if of.forward { [start, end] } else { [end, start] })
 }
 
 /// Whether one use ends at the vertex at which the other starts.

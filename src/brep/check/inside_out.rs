@@ -2,7 +2,7 @@
 //! says.
 
 use super::Finding;
-use crate::brep::mass_properties::{MassPropertiesError, Quadrature, of_body, of_loops};
+use crate::brep::mass_properties::{MassPropertiesError, Quadrature, middle, of_body, of_loops};
 use crate::brep::{BodyId, BodyKind, Brep, FaceId, ParameterLoop, Shell};
 use crate::geometry::Surface;
 use crate::math::Point3;
@@ -49,11 +49,58 @@ pub struct SliverFace {
 
 /// Part of area times extent that a negative volume must have to be believed: what a rough quadrature tells.
 const SURE: f64 = 1e-3;
+/// Part of area times extent that the volume of flat fans must have to be believed without a quadrature.
+const PLAIN: f64 = 1e-2;
+
+/// What the loops of a body's faces enclose when each face is replaced by triangles from one of its points: a
+/// closed surface that turns as the body's does.
+pub(super) struct Fan {
+    reference: Point3<f64>,
+    volume: f64,
+    area: f64,
+    extent: f64,
+}
+
+impl Fan {
+    pub(super) fn new(brep: &Brep, body: BodyId) -> Self {
+        Self { reference: middle(brep, body), volume: 0.0, area: 0.0, extent: 0.0 }
+    }
+
+    /// Adds the loops of a face of a shell that counts as it is, or turned.
+    pub(super) fn add(&mut self, loops: &[ParameterLoop], forward: bool) {
+        let sign = if forward { 1.0 } else { -1.0 };
+        let Some(apex) = loops.iter().find_map(|l| l.points.first()).map(|p| p.point - self.reference) else {
+            return;
+        };
+        for points in loops.iter().map(|l| &l.points) {
+            for (i, from) in points.iter().enumerate() {
+                let from = from.point - self.reference;
+                let to = points[(i + 1) % points.len()].point - self.reference;
+                self.volume += sign * apex.dot(&from.cross(&to)) / 6.0;
+                self.area += 0.5 * (from - apex).cross(&(to - apex)).norm();
+                self.extent = self.extent.max(from.norm());
+            }
+        }
+    }
+
+    fn is_plainly_positive(&self) -> bool {
+        self.volume > PLAIN * self.area * self.extent
+    }
+}
 
 /// Looks at the volume of a solid whose shells are closed and whose faces are all known.
-pub(super) fn check_body(brep: &Brep, id: BodyId, tolerance: f64, findings: &mut Vec<Finding>) {
+pub(super) fn check_body(
+    brep: &Brep,
+    id: BodyId,
+    fan: &Fan,
+    tolerance: f64,
+    findings: &mut Vec<Finding>,
+) {
     let body = &brep.bodies[id];
     let closed = |shell: &Shell| shell.closed && !shell.faces.is_empty();
+    if fan.is_plainly_positive() {
+        return;
+    }
     if body.kind != BodyKind::Solid || !body.shells.iter().all(|&shell| closed(&brep.shells[shell])) {
         return;
     }

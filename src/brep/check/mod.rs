@@ -13,11 +13,15 @@ mod inside_out;
 mod open_loop;
 mod orientation;
 mod pcurve_off_edge;
+mod survey;
 mod vertex_off_edge;
 
-use super::{BodyId, Brep, FaceId, LoopSampling, ParameterLoop, parameter_loops};
+use super::{BodyId, Brep, FaceId, LoopSampling, ParameterLoop, parameter_loops_with};
 use crate::diagnostic::Severity;
 use crate::math::Point3;
+use inside_out::Fan;
+use std::collections::BTreeSet;
+use survey::Survey;
 pub use crossing::{OverlappingBounds, SelfCrossingLoop};
 pub use degenerate_edge::{DegenerateEdge, Gap};
 pub use edge_off_surface::EdgeOffSurface;
@@ -148,32 +152,72 @@ impl Finding {
 /// Checks every body, each by its own tolerance, in file units. Findings come body by body, in file order.
 #[must_use]
 pub fn check(brep: &Brep, tolerance: &dyn Fn(BodyId) -> f64) -> Vec<Finding> {
+    let survey = Survey::new(brep);
     let mut findings = Vec::new();
     for (id, body) in brep.bodies.iter() {
         let tolerance = tolerance(id);
+        let mut fan = Fan::new(brep, id);
         for &shell in &body.shells {
             let faces = &brep.shells[shell].faces;
             edge_use::check(brep, shell, &mut findings);
-            vertex_off_edge::check(brep, faces, tolerance, &mut findings);
+            vertex_off_edge::check(&survey, faces, tolerance, &mut findings);
             for &face in faces {
-                check_face(brep, face, tolerance, &mut findings);
+                let loops = check_face(&survey, face, tolerance, &mut findings);
+                fan.add(&loops, brep.shells[shell].forward);
             }
-            degenerate_edge::check(brep, faces, tolerance, &mut findings);
+            degenerate_edge::check(&survey, faces, tolerance, &mut findings);
         }
-        inside_out::check_body(brep, id, tolerance, &mut findings);
+        inside_out::check_body(brep, id, &fan, tolerance, &mut findings);
     }
     findings
 }
 
-/// Checks one face: its loops, and the edges on its surface.
-pub fn check_face(brep: &Brep, face: FaceId, tolerance: f64, findings: &mut Vec<Finding>) {
+/// As [`check`], of some faces with their edges, and of the shells that these are in: for what an operation
+/// has changed. The volume of solids is not looked at.
+#[must_use]
+pub fn check_faces(
+    brep: &Brep,
+    faces: &BTreeSet<FaceId>,
+    tolerance: &dyn Fn(BodyId) -> f64,
+) -> Vec<Finding> {
+    let survey = Survey::new(brep);
+    let mut findings = Vec::new();
+    for (id, body) in brep.bodies.iter() {
+        for &shell in &body.shells {
+            let some: Vec<FaceId> =
+                brep.shells[shell].faces.iter().copied().filter(|face| faces.contains(face)).collect();
+            if some.is_empty() {
+                continue;
+            }
+            let tolerance = tolerance(id);
+            edge_use::check(brep, shell, &mut findings);
+            vertex_off_edge::check(&survey, &some, tolerance, &mut findings);
+            for &face in &some {
+                check_face(&survey, face, tolerance, &mut findings);
+            }
+            degenerate_edge::check(&survey, &some, tolerance, &mut findings);
+        }
+    }
+    findings
+}
+
+/// Checks one face: its loops, and the edges on its surface. Gives the loops.
+fn check_face(
+    survey: &Survey<'_>,
+    face: FaceId,
+    tolerance: f64,
+    findings: &mut Vec<Finding>,
+) -> Vec<ParameterLoop> {
+    let brep = survey.brep;
     open_loop::check(brep, face, tolerance, findings);
-    pcurve_off_edge::check(brep, face, tolerance, findings);
-    let loops: Vec<ParameterLoop> =
-        parameter_loops(brep, face, &LoopSampling::of_tolerance(tolerance)).unwrap_or_default();
+    pcurve_off_edge::check(survey, face, tolerance, findings);
+    let sampling = LoopSampling::of_tolerance(tolerance);
+    let loops =
+        parameter_loops_with(brep, face, &sampling, &|edge| survey.points(edge)).unwrap_or_default();
     edge_off_surface::check(face, &loops, tolerance, findings);
     orientation::check(brep, face, &loops, findings);
-    degenerate_edge::gaps(brep, face, tolerance, findings);
-    crossing::check(brep, face, &loops, tolerance, findings);
+    degenerate_edge::gaps(survey, face, tolerance, findings);
+    crossing::check(survey, face, &loops, tolerance, findings);
     inside_out::check_face(brep, face, &loops, tolerance, findings);
+    loops
 }

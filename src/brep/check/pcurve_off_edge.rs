@@ -1,7 +1,8 @@
 //! Fact: a pcurve, taken through its surface, lies on its edge's curve.
 
 use super::Finding;
-use crate::brep::{Brep, CoedgeId, FaceId, edge_range};
+use super::survey::Survey;
+use crate::brep::{CoedgeId, FaceId};
 use crate::math::Point3;
 
 /// A pcurve does not lie on its edge.
@@ -26,12 +27,13 @@ const SAME_DOMAIN: f64 = 1e-6;
 ///
 /// The standard asks that pcurve and curve be the same points, not that they share the parameter; a pcurve
 /// over another interval is compared end to end.
-pub(super) fn check(brep: &Brep, face: FaceId, tolerance: f64, findings: &mut Vec<Finding>) {
+pub(super) fn check(survey: &Survey<'_>, face: FaceId, tolerance: f64, findings: &mut Vec<Finding>) {
+    let brep = survey.brep;
     let Some(surface) = brep.surface_of(face).read() else { return };
     for coedge in brep.coedges_of(face) {
         let of = &brep.coedges[coedge];
         let (Some(pcurve), Some(curve), Some(range)) =
-            (&of.pcurve, brep.curve_of(of.edge).read(), edge_range(brep, of.edge))
+            (&of.pcurve, brep.curve_of(of.edge).read(), survey.range(of.edge))
         else {
             continue;
         };

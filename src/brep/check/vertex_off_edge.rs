@@ -1,7 +1,8 @@
 //! Fact: a vertex lies at the end of every edge that it bounds.
 
 use super::Finding;
-use crate::brep::{Brep, EdgeId, FaceId, VertexId, edge_range};
+use super::survey::Survey;
+use crate::brep::{EdgeId, FaceId, VertexId};
 use crate::math::Point3;
 use std::collections::BTreeSet;
 
@@ -19,11 +20,12 @@ pub struct VertexOffEdge {
 }
 
 /// Looks at the edges of some faces, each once.
-pub(super) fn check(brep: &Brep, faces: &[FaceId], tolerance: f64, findings: &mut Vec<Finding>) {
+pub(super) fn check(survey: &Survey<'_>, faces: &[FaceId], tolerance: f64, findings: &mut Vec<Finding>) {
+    let brep = survey.brep;
     let edges: BTreeSet<EdgeId> =
         faces.iter().flat_map(|&f| brep.coedges_of(f)).map(|c| brep.coedges[c].edge).collect();
     for id in edges {
-        let (Some(curve), Some(range)) = (brep.curve_of(id).read(), edge_range(brep, id)) else { continue };
+        let (Some(curve), Some(range)) = (brep.curve_of(id).read(), survey.range(id)) else { continue };
         let edge = &brep.edges[id];
         for (vertex, t) in [(edge.start, range.start), (edge.end, range.end)] {
             let place = brep.vertices[vertex].point;

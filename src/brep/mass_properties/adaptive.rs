@@ -4,12 +4,9 @@ use super::moments::Sums;
 use crate::math::quadrature::KRONROD_7;
 
 /// Halvings of one interval at most.
-const MAX_DEPTH: u32 = 20;
-/// Intervals of one path at most; a bound for hostile files.
-const MAX_INTERVALS: usize = 4096;
-/// Factor and power by which the distance of the two rules overstates the error of the better one, as QUADPACK
-/// has them.
-const OVERSTATED: (f64, f64) = (200.0, 1.5);
+const MAX_DEPTH: u32 = 12;
+/// Intervals between two breaks at most: where projections jump, no number of them helps.
+const MAX_INTERVALS: usize = 96;
 
 /// What counts as exact.
 #[derive(Debug, Clone, Copy)]
@@ -57,11 +54,5 @@ fn once(value: &dyn Fn(f64) -> Sums, from: f64, to: f64) -> (Sums, Sums) {
         coarse += at * (gauss * half);
         size += at.abs() * (kronrod * half.abs());
     }
-    let mut error = (fine + coarse * -1.0).abs();
-    for (error, size) in error.0.iter_mut().zip(size.0) {
-        if size > 0.0 {
-            *error = size * (OVERSTATED.0 * *error / size).powf(OVERSTATED.1).min(1.0);
-        }
-    }
-    (fine, error)
+    (fine, fine.error_against(&coarse, &size))
 }

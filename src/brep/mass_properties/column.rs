@@ -13,10 +13,10 @@ const STRAIGHT: usize = 2;
 const TAPERED: usize = 3;
 /// Points for a quarter of a turn: the fifth harmonic to rounding.
 const QUARTER: usize = 12;
-/// Points for a span of a B-spline beyond twice its degree, and at most.
-const BEYOND: usize = 1;
+/// Points for a span of a B-spline beyond its degree: exact for the volume, and good for the root in the area.
+const BEYOND: usize = 3;
 /// Further points where the integrand is no polynomial.
-const RATIONAL: usize = 4;
+const RATIONAL: usize = 3;
 /// Greatest count of points for one span.
 const MAX_POINTS: usize = 16;
 /// Greatest count of pieces of one column; a bound for hostile files.
@@ -38,15 +38,27 @@ pub(super) struct Column<'a> {
     reference: Point3<f64>,
     fine: Vec<(f64, f64)>,
     coarse: Vec<(f64, f64)>,
-    breaks: Vec<f64>,
-    period: Option<f64>,
+    /// Rules across columns, for whole rectangles.
+    across: (Vec<(f64, f64)>, Vec<(f64, f64)>),
+    pub(super) breaks: Vec<f64>,
+    pub(super) period: Option<f64>,
     wraps: bool,
     pieces: usize,
 }
 
+impl Along {
+    /// The direction across.
+    pub(super) fn other(self) -> Self {
+        match self {
+            Self::U => Self::V,
+            Self::V => Self::U,
+        }
+    }
+}
+
 impl<'a> Column<'a> {
     pub(super) fn new(surface: &'a Surface, along: Along, reference: Point3<f64>, pieces: usize) -> Self {
-        let points = points(surface, along);
+        let points = points_of(surface, along);
         let rule = |n: usize| {
             let (x, w) = gauss_legendre(n);
             x.into_iter().zip(w).collect::<Vec<_>>()
@@ -65,7 +77,40 @@ impl<'a> Column<'a> {
                 | Surface::Torus { .. }
         );
         let breaks = breaks(surface, along);
-        Self { surface, along, reference, fine: rule(points), coarse, breaks, period, wraps, pieces }
+        let points_across = points_of(surface, along.other());
+        let across = (rule(points_across), rule(points_across.saturating_sub(2).max(1)));
+        let fine = rule(points);
+        Self { surface, along, reference, fine, coarse, across, breaks, period, wraps, pieces }
+    }
+
+    /// The integral over a rectangle between lines, and how far coarser rules are off there.
+    pub(super) fn rectangle(&self, across: (f64, f64), along: (f64, f64)) -> (Sums, Sums) {
+        let coarse = if self.coarse.is_empty() { &self.fine } else { &self.coarse };
+        let fine = self.tensor(&self.across.0, &self.fine, across, along);
+        let other = self.tensor(&self.across.1, coarse, across, along);
+        (fine.0, fine.0.error_against(&other.0, &fine.1))
+    }
+
+    /// The integral by a rule each way, and that of the integrand's absolute values.
+    fn tensor(
+        &self,
+        rule_across: &[(f64, f64)],
+        rule_along: &[(f64, f64)],
+        across: (f64, f64),
+        along: (f64, f64),
+    ) -> (Sums, Sums) {
+        let (middle_a, half_a) = (0.5 * (across.0 + across.1), 0.5 * (across.1 - across.0));
+        let (middle_b, half_b) = (0.5 * (along.0 + along.1), 0.5 * (along.1 - along.0));
+        let (mut sum, mut size) = (Sums::ZERO, Sums::ZERO);
+        for &(x, weight_x) in rule_across {
+            for &(y, weight_y) in rule_along {
+                let value = self.element(middle_a + half_a * x, middle_b + half_b * y);
+                let weight = weight_x * weight_y * half_a * half_b;
+                sum += value * weight;
+                size += value.abs() * weight.abs();
+            }
+        }
+        (sum, size)
     }
 
     /// Point, seen from the reference, and `du × dv`.
@@ -135,7 +180,7 @@ pub(super) fn between(values: &[f64], period: Option<f64>, low: f64, high: f64) 
 }
 
 /// Points of the rule for one piece between breaks.
-fn points(surface: &Surface, along: Along) -> usize {
+fn points_of(surface: &Surface, along: Along) -> usize {
     match (surface, along) {
         (Surface::Plane(_), _) | (Surface::Cylinder { .. } | Surface::LinearExtrusion { .. }, Along::V) => {
             STRAIGHT
@@ -144,9 +189,9 @@ fn points(surface: &Surface, along: Along) -> usize {
         (Surface::Nurbs(nurbs), _) => {
             let knots = if along == Along::U { nurbs.knots_u() } else { nurbs.knots_v() };
             let rational = if nurbs.is_rational() { RATIONAL } else { 0 };
-            (2 * knots.degree() + BEYOND + rational).clamp(4, MAX_POINTS)
+            (knots.degree() + BEYOND + rational).clamp(4, MAX_POINTS)
         }
-        (Surface::Trimmed { basis, .. } | Surface::CurveBounded { basis }, _) => points(basis, along).max(4),
+        (Surface::Trimmed { basis, .. } | Surface::CurveBounded { basis }, _) => points_of(basis, along).max(4),
         _ => QUARTER,
     }
 }

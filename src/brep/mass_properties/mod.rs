@@ -9,6 +9,7 @@
 //! Repairs nothing. Densities are one; the numbers are in file units.
 
 mod adaptive;
+mod cells;
 mod column;
 mod moments;
 mod path;
@@ -21,6 +22,7 @@ use super::{
 use crate::geometry::Surface;
 use crate::math::{BoundingBox, Point3};
 use adaptive::{Accuracy, integrate};
+use cells::{Cells, Extent};
 use column::{Along, Column, between, breaks};
 pub use moments::MassProperties;
 use moments::Sums;
@@ -174,7 +176,7 @@ pub fn of_loops(
 }
 
 /// The middle of the vertices of a body: moments about it lose least.
-fn middle(brep: &Brep, body: BodyId) -> Point3<f64> {
+pub(super) fn middle(brep: &Brep, body: BodyId) -> Point3<f64> {
     let faces = brep.bodies[body].shells.iter().flat_map(|&shell| &brep.shells[shell].faces);
     let loops = faces.flat_map(|&face| &brep.faces[face].loops);
     let mut points = loops.flat_map(|&bound| {
@@ -338,66 +340,127 @@ impl<'a> Region<'a> {
     /// The integral over what the paths leave to their left in the parameter plane, and its error.
     fn around(&self, foot: &Foot<'_>, boundary: &[Path<'_>], base: f64) -> (Sums, Sums) {
         let (mut sum, mut errors) = (Sums::ZERO, Sums::ZERO);
+        // Lines of analytic surfaces are no breaks, and their columns cost little.
+        let mut cells =
+            if is_analytic(self.surface) { None } else { self.extent(boundary).map(|e| self.cells(&e, base)) };
         for path in boundary {
-            let (part, error) = self.along(foot, path, base);
+            let (part, error) = self.along(foot, path, base, cells.as_mut());
             sum += part;
+            errors += error;
+        }
+        if let Some(cells) = cells {
+            let (inner, error) = cells.integral(&self.column, &self.accuracy);
+            sum += inner * if self.column.along == Along::V { -1.0 } else { 1.0 };
             errors += error;
         }
         (sum, errors)
     }
 
-    fn along(&self, foot: &Foot<'_>, path: &Path<'_>, base: f64) -> (Sums, Sums) {
-        // Green: the double integral is that of a column up times -du, or of one to the right times dv.
-        let v_columns = self.column.along == Along::V;
-        let term = |place: Place, speed: Place| {
-            let (at, to, factor) =
-                if v_columns { (place.0, place.1, -speed.0) } else { (place.1, place.0, speed.1) };
-            if factor == 0.0 { Sums::ZERO } else { self.column.integral(at, base, to) * factor }
-        };
-        let pick: fn(Place) -> f64 = if v_columns { |p| p.0 } else { |p| p.1 };
-        let across = breaks(self.surface, if v_columns { Along::U } else { Along::V });
+    fn cells(&self, extent: &Extent, base: f64) -> Cells {
+        let across = self.column.along.other();
         let periods = self.surface.periods();
-        let period = if v_columns { periods.0 } else { periods.1 };
-        let lines = |low: f64, high: f64| between(&across, period, low, high);
-        let (mut sum, mut errors) = (Sums::ZERO, Sums::ZERO);
-        let place_at: Box<dyn Fn(f64) -> (Place, Place)>;
-        let stops: Vec<f64>;
-        match path {
-            Path::Edge(edge) => {
-                // On smooth analytic surfaces no line is a break.
-                let lines = |low: f64, high: f64| {
-                    if is_analytic(self.surface) { Vec::new() } else { lines(low, high) }
-                };
-                stops = edge.breaks(foot, pick, &lines);
-                place_at = Box::new(|t| edge.place_and_speed(foot, t));
-            }
-            Path::Straight(a, b) => {
-                let speed = (b.0 - a.0, b.1 - a.1);
-                let (x, y) = (pick(*a), pick(*b));
-                let mut all: Vec<f64> =
-                    lines(x.min(y), x.max(y)).iter().map(|line| (line - x) / (y - x)).collect();
-                all.extend([0.0, 1.0]);
-                all.sort_by(f64::total_cmp);
-                stops = all;
-                place_at = Box::new(move |s| ((a.0 + speed.0 * s, a.1 + speed.1 * s), speed));
-            }
+        let period = if across == Along::U { periods.0 } else { periods.1 };
+        Cells::new(
+            (&self.column.breaks, self.column.period),
+            (&breaks(self.surface, across), period),
+            extent,
+            base,
+            self.pieces,
+        )
+    }
+
+    /// How far the known places of a boundary reach.
+    fn extent(&self, boundary: &[Path<'_>]) -> Option<Extent> {
+        let none = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut extent = Extent { along: none, across: none };
+        let grow = |range: &mut (f64, f64), x: f64| *range = (range.0.min(x), range.1.max(x));
+        for place in boundary.iter().flat_map(Path::places) {
+            let (across, along) = self.turned(place);
+            grow(&mut extent.along, along);
+            grow(&mut extent.across, across);
         }
-        let value = |t: f64| {
-            let (place, speed) = place_at(t);
-            term(place, speed)
+        extent.along.0.is_finite().then_some(extent)
+    }
+
+    /// A place as (across, along) columns.
+    fn turned(&self, (u, v): Place) -> Place {
+        if self.column.along == Along::V { (u, v) } else { (v, u) }
+    }
+
+    /// The part of one path: all of it without cells, and with cells what lies above those that it books.
+    fn along(
+        &self,
+        foot: &Foot<'_>,
+        path: &Path<'_>,
+        base: f64,
+        mut cells: Option<&mut Cells>,
+    ) -> (Sums, Sums) {
+        let v_columns = self.column.along == Along::V;
+        let stops = self.stops(foot, path, cells.as_deref());
+        let place_at = |t: f64| match path {
+            Path::Edge(edge) => edge.place_and_speed(foot, t),
+            Path::Straight(a, b) => {
+                let way = (b.0 - a.0, b.1 - a.1);
+                ((a.0 + way.0 * t, a.1 + way.1 * t), way)
+            }
         };
-        for pair in thinned(&stops, self.pieces).windows(2) {
-            let (part, error) = integrate(&value, pair[0], pair[1], &self.accuracy);
+        let (mut sum, mut errors) = (Sums::ZERO, Sums::ZERO);
+        // What one stop ends at is what the next begins at, to the bit: pieces cancel.
+        let ends: Vec<Place> = stops.iter().map(|&t| self.turned(place_at(t).0)).collect();
+        for (pair, ends) in stops.windows(2).zip(ends.windows(2)) {
+            let (place, speed) = place_at(0.5 * (pair[0] + pair[1]));
+            let (middle, speed) = (self.turned(place), self.turned(speed));
+            let from = cells.as_mut().map_or(base, |cells| cells.book(middle, ends[0].0, ends[1].0));
+            // Green: the double integral is that of a column up times -du, or of one to the right times dv.
+            let term = |t: f64| {
+                let (place, speed) = place_at(t);
+                let ((at, to), (factor, _)) = (self.turned(place), self.turned(speed));
+                if factor == 0.0 {
+                    Sums::ZERO
+                } else {
+                    self.column.integral(at, from, to) * if v_columns { -factor } else { factor }
+                }
+            };
+            let (part, error) = integrate(&term, pair[0], pair[1], &self.accuracy);
             sum += part;
             errors += error;
-            let (place, speed) = place_at(0.5 * (pair[0] + pair[1]));
-            let (at, to, speed) =
-                if v_columns { (place.0, place.1, speed.0) } else { (place.1, place.0, speed.1) };
-            if speed != 0.0 {
-                errors += self.column.error(at, base, to) * (speed * (pair[1] - pair[0])).abs();
+            if speed.0 != 0.0 {
+                let width = (speed.0 * (pair[1] - pair[0])).abs();
+                errors += self.column.error(middle.0, from, middle.1) * width;
             }
         }
         (sum, errors)
+    }
+
+    /// Values of a path's parameter between which nothing changes its form.
+    fn stops(&self, foot: &Foot<'_>, path: &Path<'_>, cells: Option<&Cells>) -> Vec<f64> {
+        let periods = self.surface.periods();
+        let period = if self.column.along == Along::V { periods.0 } else { periods.1 };
+        let strips = |low: f64, high: f64| match (cells, path) {
+            (Some(cells), _) => cells.strips_between(low, high),
+            (None, Path::Straight(..)) => {
+                between(&breaks(self.surface, self.column.along.other()), period, low, high)
+            }
+            (None, Path::Edge(_)) => Vec::new(),
+        };
+        let rows = |low: f64, high: f64| cells.map(|cells| cells.rows_between(low, high)).unwrap_or_default();
+        let (first, second): (fn(Place) -> f64, fn(Place) -> f64) =
+            if self.column.along == Along::V { (|p| p.0, |p| p.1) } else { (|p| p.1, |p| p.0) };
+        let stops = match path {
+            Path::Edge(edge) => edge.breaks(foot, &[(first, &strips), (second, &rows)]),
+            Path::Straight(a, b) => {
+                let mut all = vec![0.0, 1.0];
+                let (x, y) = (first(*a), first(*b));
+                all.extend(strips(x.min(y), x.max(y)).iter().map(|line| (line - x) / (y - x)));
+                let (x, y) = (second(*a), second(*b));
+                all.extend(rows(x.min(y), x.max(y)).iter().map(|line| (line - x) / (y - x)));
+                all.sort_by(f64::total_cmp);
+                all.dedup();
+                all
+            }
+        };
+        // A piece over several cells is booked in that of its middle: less exact, and no less right.
+        thinned(&stops, self.pieces)
     }
 
     /// The integral over the whole domain.
@@ -412,7 +475,7 @@ impl<'a> Region<'a> {
         } else {
             (Path::Straight((u1, v0), (u1, v1)), u0)
         };
-        Ok(self.along(&foot, &path, base))
+        Ok(self.around(&foot, &[path], base))
     }
 }
 

@@ -11,6 +11,10 @@ pub(super) const AREAS: usize = 4;
 /// Powers of a length that each integral has.
 const POWERS: [i32; COUNT] = [2, 3, 3, 3, 3, 4, 4, 4, 5, 5, 5, 5, 5, 5];
 
+/// Factor and power by which the distance of two rules overstates the error of the better one, as QUADPACK has
+/// them.
+const OVERSTATED: (f64, f64) = (200.0, 1.5);
+
 /// Integrals over a piece of surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Sums(pub(super) [f64; COUNT]);
@@ -54,6 +58,17 @@ impl Sums {
     pub(super) fn abs(mut self) -> Self {
         self.0.iter_mut().for_each(|value| *value = value.abs());
         self
+    }
+
+    /// The error of this integral where a coarser rule gives another and the absolute values a third.
+    pub(super) fn error_against(&self, coarse: &Self, size: &Self) -> Self {
+        let mut error = (*self + *coarse * -1.0).abs();
+        for (error, size) in error.0.iter_mut().zip(size.0) {
+            if size > 0.0 {
+                *error = size * (OVERSTATED.0 * *error / size).powf(OVERSTATED.1).min(1.0);
+            }
+        }
+        error
     }
 
     /// Each over what it is for a piece of the given size at the given distance from the reference.

@@ -9,6 +9,9 @@ use crate::math::Point3;
 /// A place in the parameter plane.
 pub(super) type Place = (f64, f64);
 
+/// A parameter of the surface, and the values of it that matter between two.
+pub(super) type LinesOf<'a> = (fn(Place) -> f64, &'a dyn Fn(f64, f64) -> Vec<f64>);
+
 /// One piece of the boundary.
 pub(super) enum Path<'a> {
     /// Along an edge.
@@ -71,6 +74,17 @@ impl<'a> Foot<'a> {
     }
 }
 
+impl Path<'_> {
+    /// Places that it is known to pass.
+    pub(super) fn places(&self) -> impl Iterator<Item = Place> + '_ {
+        let (ends, known) = match self {
+            Self::Straight(from, to) => (vec![*from, *to], &[][..]),
+            Self::Edge(edge) => (Vec::new(), &edge.places[..]),
+        };
+        ends.into_iter().chain(known.iter().map(|&(_, place)| place))
+    }
+}
+
 impl EdgePath<'_> {
     pub(super) fn first(&self) -> Place {
         self.places[0].1
@@ -127,21 +141,18 @@ impl EdgePath<'_> {
         (place, speed)
     }
 
-    /// Parameters where the curve changes its form or crosses given values of one parameter of the surface, from
+    /// Parameters where the curve changes its form or crosses given values of the surface's parameters, from
     /// the first to the last.
-    pub(super) fn breaks(
-        &self,
-        foot: &Foot<'_>,
-        pick: fn(Place) -> f64,
-        lines: &dyn Fn(f64, f64) -> Vec<f64>,
-    ) -> Vec<f64> {
+    pub(super) fn breaks(&self, foot: &Foot<'_>, lines: &[LinesOf<'_>]) -> Vec<f64> {
         let (first, last) = self.range();
         let (low, high) = (first.min(last), first.max(last));
         let mut breaks = inner_breaks(self.curve, low, high);
-        for pair in self.places.windows(2) {
-            let (x, y) = (pick(pair[0].1), pick(pair[1].1));
-            for line in lines(x.min(y), x.max(y)) {
-                breaks.push(self.crossing(foot, pick, line, (pair[0].0, x), (pair[1].0, y)));
+        for (pick, lines) in lines {
+            for pair in self.places.windows(2) {
+                let (x, y) = (pick(pair[0].1), pick(pair[1].1));
+                for line in lines(x.min(y), x.max(y)) {
+                    breaks.push(self.crossing(foot, *pick, line, (pair[0].0, x), (pair[1].0, y)));
+                }
             }
         }
         breaks.sort_by(f64::total_cmp);
