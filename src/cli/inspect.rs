@@ -8,7 +8,7 @@ use super::print::Printer;
 use super::show;
 use crate::job::contents::{Contents, TreeEntry, contents};
 use crate::job::failure::PartError;
-use crate::job::measure::{BodyMeasures, measure_bodies};
+use crate::job::measure::{BodyMeasures, measure_bodies, measure_face};
 use crate::job::operate::OperateError;
 use crate::job::part::Read;
 use crate::job::select;
@@ -42,6 +42,9 @@ fn seen(arguments: &InspectArguments, printer: &mut Printer) -> Result<(Contents
     let mut contents = contents(&model, &faces);
     if arguments.measure {
         contents.bodies = measure_bodies(&model);
+        for (entry, &face) in contents.faces.iter_mut().zip(&faces) {
+            entry.measured = measure_face(&model, face);
+        }
     }
     Ok((contents, !read.has_errors()))
 }

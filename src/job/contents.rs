@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
-use super::measure::{BodyMeasures, Figures, kind};
+use super::measure::{BodyMeasures, FaceMeasures, Figures, kind};
 use super::select;
 use super::selector::Selector;
 use crate::brep::FaceId;
@@ -106,6 +106,9 @@ pub struct FaceEntry {
     pub product: Option<String>,
     /// Count of bounds.
     pub loops: usize,
+    /// What it measures, where that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub measured: Option<FaceMeasures>,
     /// Area of its triangulation, in square file units.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub area: Option<f64>,
@@ -150,6 +153,7 @@ pub fn contents(model: &Model, faces: &[FaceId]) -> Contents {
             layers: select::layers(model, face),
             product: model.product_of(face).map(|product| product.name.clone()),
             loops: model.brep.faces[face].loops.len(),
+            measured: None,
             area: shape.as_ref().map(|shape| shape.area),
             bounds: shape.map(|shape| shape.bounds),
             neighbours: neighbours(face).into_iter().map(|f| model.origins.faces[f].to_string()).collect(),

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::brep::mass_properties::{self, Quadrature};
-use crate::brep::{BodyId, BodyKind};
+use crate::brep::{BodyId, BodyKind, FaceId};
 use crate::geometry::{Carried, Surface};
 use crate::model::{Context, Inventory, Model};
 
@@ -67,7 +67,7 @@ impl Figures {
 /// Distance below which points count as one in a file that does not say: a micrometre.
 const UNCERTAINTY_METRES: f64 = 1e-6;
 
-/// Mass properties of one body, in its file units.
+/// Mass properties of one body of density one, in its file units.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct BodyMeasures {
     /// Its record.
@@ -75,19 +75,40 @@ pub struct BodyMeasures {
     /// Volume of a solid; negative where it is turned inside out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub volume: Option<f64>,
+    /// Bound on its error by the quadrature's own estimate; gaps between edges and surfaces are not in it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub volume_error: Option<f64>,
     /// Area of its faces.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub area: Option<f64>,
+    /// Bound on its error, as for the volume.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub area_error: Option<f64>,
     /// Centroid of a solid's volume, else of the area.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub centroid: Option<[f64; 3]>,
-    /// Bound on the error of volume and area by the quadrature's own estimate, relative to each; gaps between
-    /// edges and surfaces are not in it.
+    /// Inertia of a solid about its centroid, row by row: `∫ (|r|² I - r rᵀ) dV`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub relative_error: Option<f64>,
+    pub inertia: Option<[[f64; 3]; 3]>,
+    /// Greatest distance of an edge from a surface that it bounds: where the faces end is open to this extent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gap: Option<f64>,
     /// Why there are no numbers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unknown: Option<String>,
+}
+
+/// What one face measures, in its file units.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct FaceMeasures {
+    /// Its area.
+    pub area: f64,
+    /// Bound on its error by the quadrature's own estimate.
+    pub area_error: f64,
+    /// Its centroid.
+    pub centroid: [f64; 3],
+    /// Greatest distance of its edges from its surface.
+    pub gap: f64,
 }
 
 /// Measures every body, in file order.
@@ -96,28 +117,57 @@ pub fn measure_bodies(model: &Model) -> Vec<BodyMeasures> {
     model.brep.bodies.ids().map(|body| measure_body(model, body)).collect()
 }
 
-fn measure_body(model: &Model, body: BodyId) -> BodyMeasures {
-    let id = model.origins.bodies[body].to_string();
-    let mut measures =
-        BodyMeasures { id, volume: None, area: None, centroid: None, relative_error: None, unknown: None };
+/// Distance below which points of a body count as one, in its file units.
+fn uncertainty(model: &Model, body: BodyId) -> f64 {
     let context = &model.contexts[model.body_context[body]];
     let said = context.uncertainty.map(|tolerance| tolerance.0);
-    let tolerance = said.unwrap_or(UNCERTAINTY_METRES / context.length.metres);
-    match mass_properties::of_body(&model.brep, body, &Quadrature::exact(tolerance)) {
+    said.unwrap_or(UNCERTAINTY_METRES / context.length.metres)
+}
+
+fn measure_body(model: &Model, body: BodyId) -> BodyMeasures {
+    let mut measures = BodyMeasures {
+        id: model.origins.bodies[body].to_string(),
+        volume: None,
+        volume_error: None,
+        area: None,
+        area_error: None,
+        centroid: None,
+        inertia: None,
+        gap: None,
+        unknown: None,
+    };
+    match mass_properties::of_body(&model.brep, body, &Quadrature::exact(uncertainty(model, body))) {
         Ok(found) => {
             let solid = model.brep.bodies[body].kind == BodyKind::Solid;
-            let relative = |error: f64, value: f64| if value == 0.0 { 0.0 } else { error / value.abs() };
-            let area_error = relative(found.area_error(), found.area());
-            let volume_error = if solid { relative(found.volume_error(), found.volume()) } else { 0.0 };
             let centroid = if solid { found.centroid() } else { found.area_centroid() };
             measures.volume = solid.then(|| found.volume());
+            measures.volume_error = solid.then(|| found.volume_error());
             measures.area = Some(found.area());
+            measures.area_error = Some(found.area_error());
             measures.centroid = Some(centroid.coords.into());
-            measures.relative_error = Some(area_error.max(volume_error));
+            let inertia = found.inertia();
+            measures.inertia = solid.then(|| [0, 1, 2].map(|i| [0, 1, 2].map(|j| inertia[(i, j)])));
+            measures.gap = Some(found.gap());
         }
         Err(error) => measures.unknown = Some(error.to_string()),
     }
     measures
+}
+
+/// Measures a face; `None` where its surface or its bounds are not known.
+#[must_use]
+pub fn measure_face(model: &Model, face: FaceId) -> Option<FaceMeasures> {
+    let brep = &model.brep;
+    let body = brep.shells[brep.faces[face].shell].body;
+    let quadrature = Quadrature::exact(uncertainty(model, body));
+    let reference = mass_properties::middle(brep, body);
+    let found = mass_properties::of_face(brep, face, &quadrature, reference).ok()?;
+    Some(FaceMeasures {
+        area: found.area(),
+        area_error: found.area_error(),
+        centroid: found.area_centroid().coords.into(),
+        gap: found.gap(),
+    })
 }
 
 fn distinct_units(contexts: &[Context]) -> Vec<String> {

@@ -28,6 +28,9 @@ pub struct OwnFinding {
     pub code: String,
     /// `error`, or `warning` for what a sound part may have.
     pub severity: String,
+    /// Whether an operation that adds it has failed.
+    #[serde(skip)]
+    pub fails_a_change: bool,
     /// Entity concerned, as the file names it.
     pub entity: String,
     /// Line of its record, from 1.
@@ -147,6 +150,7 @@ fn describe(document: &Document, model: &Model, finding: &Finding) -> OwnFinding
     OwnFinding {
         code: finding.code().to_owned(),
         severity: finding.severity().as_str().to_owned(),
+        fails_a_change: finding.fails_a_change(),
         entity: origin.to_string(),
         line: document.line_of(origin),
         place: [place.x, place.y, place.z],

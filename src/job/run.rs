@@ -232,7 +232,7 @@ fn read_again(
         // Of the operations, not of the part's box: a part of an assembly may grow while the box stays.
         let growth = job.operation.iter().map(Operation::growth).product();
         let own = findings_of_faces(&read.document, &model, &wanted.touched, growth);
-        let new = new_findings(&wanted.findings, &own, growth).filter(|finding| finding.is_error());
+        let new = new_findings(&wanted.findings, &own, growth).filter(|finding| finding.fails_a_change);
         findings.extend(new.map(ToString::to_string));
         report.findings = own;
     }

@@ -1,8 +1,10 @@
 //! Facts: an edge is longer than the tolerance, and edges that follow each other in a loop end at one place.
 
 use super::Finding;
+use super::limits::Limits;
 use super::survey::Survey;
 use crate::brep::{Brep, CoedgeId, EdgeId, FaceId};
+use crate::diagnostic::Severity;
 use crate::math::Point3;
 use std::collections::BTreeSet;
 
@@ -24,6 +26,8 @@ pub struct Gap {
     pub coedge: CoedgeId,
     /// Distance of the ends, in file units.
     pub distance: f64,
+    /// A warning where other programs take it for the edges' own tolerance.
+    pub severity: Severity,
     /// Where the earlier one ends.
     pub place: Point3<f64>,
 }
@@ -48,7 +52,7 @@ pub(super) fn check(survey: &Survey<'_>, faces: &[FaceId], tolerance: f64, findi
 }
 
 /// Looks at the loops of a face.
-pub(super) fn gaps(survey: &Survey<'_>, face: FaceId, tolerance: f64, findings: &mut Vec<Finding>) {
+pub(super) fn gaps(survey: &Survey<'_>, face: FaceId, limits: &Limits, findings: &mut Vec<Finding>) {
     let brep = survey.brep;
     for &bound in &brep.faces[face].loops {
         let coedges = &brep.loops[bound].coedges;
@@ -57,8 +61,9 @@ pub(super) fn gaps(survey: &Survey<'_>, face: FaceId, tolerance: f64, findings: 
             let next = (i + 1) % coedges.len();
             let (Some([_, end]), Some([start, _])) = (ends[i], ends[next]) else { continue };
             let distance = (start - end).norm();
-            if distance > BOTH_ENDS * tolerance && joined(brep, coedges[i], coedges[next]) {
-                findings.push(Finding::Gap(Gap { coedge: coedges[next], distance, place: end }));
+            if distance > BOTH_ENDS * limits.tolerance && joined(brep, coedges[i], coedges[next]) {
+                let (coedge, severity) = (coedges[next], limits.severity(distance));
+                findings.push(Finding::Gap(Gap { coedge, distance, severity, place: end }));
             }
         }
     }

@@ -10,6 +10,7 @@ mod degenerate_edge;
 mod edge_off_surface;
 mod edge_use;
 mod inside_out;
+mod limits;
 mod open_loop;
 mod orientation;
 mod pcurve_off_edge;
@@ -20,6 +21,7 @@ use super::{BodyId, Brep, FaceId, LoopSampling, ParameterLoop, parameter_loops_w
 use crate::diagnostic::Severity;
 use crate::math::Point3;
 use inside_out::Fan;
+use limits::Limits;
 use std::collections::BTreeSet;
 use survey::Survey;
 pub use crossing::{OverlappingBounds, SelfCrossingLoop};
@@ -128,9 +130,19 @@ impl Finding {
     #[must_use]
     pub fn severity(&self) -> Severity {
         match self {
+            Self::EdgeOffSurface(f) => f.severity,
+            Self::VertexOffEdge(f) => f.severity,
+            Self::PcurveOffEdge(f) => f.severity,
+            Self::Gap(f) => f.severity,
             Self::DegenerateEdge(_) | Self::SliverFace(_) => Severity::Warning,
             _ => Severity::Error,
         }
+    }
+
+    /// Whether an operation that adds it has failed: anything but what a sound part may well have.
+    #[must_use]
+    pub fn fails_a_change(&self) -> bool {
+        !matches!(self, Self::DegenerateEdge(_) | Self::SliverFace(_))
     }
 
     /// Distance by which it is violated, in file units; `None` where the fact is not one of distance.
@@ -155,19 +167,20 @@ pub fn check(brep: &Brep, tolerance: &dyn Fn(BodyId) -> f64) -> Vec<Finding> {
     let survey = Survey::new(brep);
     let mut findings = Vec::new();
     for (id, body) in brep.bodies.iter() {
-        let tolerance = tolerance(id);
+        let faces = body.shells.iter().flat_map(|&shell| brep.shells[shell].faces.iter().copied());
+        let limits = Limits::new(tolerance(id), survey.extent(faces));
         let mut fan = Fan::new(brep, id);
         for &shell in &body.shells {
             let faces = &brep.shells[shell].faces;
             edge_use::check(brep, shell, &mut findings);
-            vertex_off_edge::check(&survey, faces, tolerance, &mut findings);
+            vertex_off_edge::check(&survey, faces, &limits, &mut findings);
             for &face in faces {
-                let loops = check_face(&survey, face, tolerance, &mut findings);
+                let loops = check_face(&survey, face, &limits, &mut findings);
                 fan.add(&loops, brep.shells[shell].forward);
             }
-            degenerate_edge::check(&survey, faces, tolerance, &mut findings);
+            degenerate_edge::check(&survey, faces, limits.tolerance, &mut findings);
         }
-        inside_out::check_body(brep, id, &fan, tolerance, &mut findings);
+        inside_out::check_body(brep, id, &fan, limits.tolerance, &mut findings);
     }
     findings
 }
@@ -189,13 +202,13 @@ pub fn check_faces(
             if some.is_empty() {
                 continue;
             }
-            let tolerance = tolerance(id);
+            let limits = Limits::new(tolerance(id), survey.extent(some.iter().copied()));
             edge_use::check(brep, shell, &mut findings);
-            vertex_off_edge::check(&survey, &some, tolerance, &mut findings);
+            vertex_off_edge::check(&survey, &some, &limits, &mut findings);
             for &face in &some {
-                check_face(&survey, face, tolerance, &mut findings);
+                check_face(&survey, face, &limits, &mut findings);
             }
-            degenerate_edge::check(&survey, &some, tolerance, &mut findings);
+            degenerate_edge::check(&survey, &some, limits.tolerance, &mut findings);
         }
     }
     findings
@@ -205,18 +218,18 @@ pub fn check_faces(
 fn check_face(
     survey: &Survey<'_>,
     face: FaceId,
-    tolerance: f64,
+    limits: &Limits,
     findings: &mut Vec<Finding>,
 ) -> Vec<ParameterLoop> {
-    let brep = survey.brep;
+    let (brep, tolerance) = (survey.brep, limits.tolerance);
     open_loop::check(brep, face, tolerance, findings);
-    pcurve_off_edge::check(survey, face, tolerance, findings);
+    pcurve_off_edge::check(survey, face, limits, findings);
     let sampling = LoopSampling::of_tolerance(tolerance);
     let loops =
         parameter_loops_with(brep, face, &sampling, &|edge| survey.points(edge)).unwrap_or_default();
-    edge_off_surface::check(face, &loops, tolerance, findings);
+    edge_off_surface::check(face, &loops, limits, findings);
     orientation::check(brep, face, &loops, findings);
-    degenerate_edge::gaps(survey, face, tolerance, findings);
+    degenerate_edge::gaps(survey, face, limits, findings);
     crossing::check(survey, face, &loops, tolerance, findings);
     inside_out::check_face(brep, face, &loops, tolerance, findings);
     loops

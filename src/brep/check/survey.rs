@@ -1,7 +1,8 @@
 //! What several facts need of the edges of a body, found once: where they lie on their curves, and points along.
 
 use crate::brep::edge_samples::sample_curve;
-use crate::brep::{Arena, Brep, EdgeId, EdgePoint, EdgeRange, EdgeSampling, edge_range};
+use crate::brep::{Arena, Brep, EdgeId, EdgePoint, EdgeRange, EdgeSampling, FaceId, edge_range};
+use crate::math::BoundingBox;
 use std::cell::OnceCell;
 
 /// An edge as its curve has it.
@@ -30,6 +31,17 @@ impl<'a> Survey<'a> {
             Some(Sampled { range, points: sample_curve(curve, range, &EdgeSampling::default()) })
         };
         self.edges[edge].get_or_init(find).as_ref()
+    }
+
+    /// Size of some faces by their edges: the diagonal of the box.
+    pub(super) fn extent(&self, faces: impl Iterator<Item = FaceId>) -> f64 {
+        let mut bounds = BoundingBox::EMPTY;
+        for coedge in faces.flat_map(|face| self.brep.coedges_of(face)) {
+            let edge = self.edge(self.brep.coedges[coedge].edge);
+            edge.into_iter().flat_map(|edge| &edge.points).for_each(|at| bounds.include(&at.point));
+        }
+        let size = bounds.diagonal();
+        if size.is_finite() { size } else { 0.0 }
     }
 
     /// Parameters of the ends of an edge.

@@ -172,11 +172,13 @@ pub fn of_loops(
     } else if sums.0[0] < 0.0 {
         sums = sums * -1.0;
     }
-    Ok(MassProperties { reference, sums, errors })
+    let gap = loops.iter().map(|l| l.gap).fold(0.0, f64::max);
+    Ok(MassProperties { reference, sums, errors, gap })
 }
 
 /// The middle of the vertices of a body: moments about it lose least.
-pub(super) fn middle(brep: &Brep, body: BodyId) -> Point3<f64> {
+#[must_use]
+pub fn middle(brep: &Brep, body: BodyId) -> Point3<f64> {
     let faces = brep.bodies[body].shells.iter().flat_map(|&shell| &brep.shells[shell].faces);
     let loops = faces.flat_map(|&face| &brep.faces[face].loops);
     let mut points = loops.flat_map(|&bound| {

@@ -115,13 +115,14 @@ pub struct MassProperties {
     pub reference: Point3<f64>,
     pub(super) sums: Sums,
     pub(super) errors: Sums,
+    pub(super) gap: f64,
 }
 
 impl MassProperties {
     /// Of nothing, about a point.
     #[must_use]
     pub fn none(reference: Point3<f64>) -> Self {
-        Self { reference, sums: Sums::ZERO, errors: Sums::ZERO }
+        Self { reference, sums: Sums::ZERO, errors: Sums::ZERO, gap: 0.0 }
     }
 
     /// Area.
@@ -172,6 +173,13 @@ impl MassProperties {
         Matrix3::identity() * about.trace() - about
     }
 
+    /// Greatest distance of an edge from a surface that it bounds. Where faces end is open to this extent; the
+    /// bounds on errors do not count it.
+    #[must_use]
+    pub fn gap(&self) -> f64 {
+        self.gap
+    }
+
     /// As a shell that an oriented shell turns round: the same area, the opposite volume.
     #[must_use]
     pub fn reversed(mut self) -> Self {
@@ -185,5 +193,6 @@ impl AddAssign for MassProperties {
     fn add_assign(&mut self, other: Self) {
         self.sums += other.sums;
         self.errors += other.errors;
+        self.gap = self.gap.max(other.gap);
     }
 }
