@@ -204,8 +204,7 @@ impl<'a> Walk<'a> {
         let coarse = if size > 0.0 { COARSE_PART * size } else { f64::INFINITY };
         let lost = sampling.tolerance.min(coarse).max(SURE_PART * size);
         let longest = longest_lines(surface);
-        let pole =
-            [longest.0, longest.1].map(|length| sampling.tolerance.min(POLE_PART * length));
+        let pole = [longest.0, longest.1].map(|length| sampling.tolerance.min(POLE_PART * length));
         Self { surface, locator, periods, sampling, lost, pole: (pole[0], pole[1]), same_sense }
     }
 
@@ -363,10 +362,8 @@ impl<'a> Walk<'a> {
         let d = self.surface.derivatives(wu, wv);
         let ((u0, u1), (v0, v1)) = self.surface.domain();
         // The whole parameter line through the point is shorter than the tolerance, as far as its speed tells.
-        let shrunk =
-            |speed: f64, length: f64, pole: f64| length.is_finite() && speed * length <= pole;
-        let singular =
-            (shrunk(d.du.norm(), u1 - u0, self.pole.0), shrunk(d.dv.norm(), v1 - v0, self.pole.1));
+        let shrunk = |speed: f64, length: f64, pole: f64| length.is_finite() && speed * length <= pole;
+        let singular = (shrunk(d.du.norm(), u1 - u0, self.pole.0), shrunk(d.dv.norm(), v1 - v0, self.pole.1));
         Place { at, u, v, gap: (d.point - at.point).norm(), singular }
     }
 

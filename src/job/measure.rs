@@ -8,6 +8,7 @@ use serde::Serialize;
 use crate::brep::mass_properties::{self, Quadrature};
 use crate::brep::{BodyId, BodyKind, FaceId};
 use crate::geometry::{Carried, Surface};
+use crate::math::Point3;
 use crate::model::{Context, Inventory, Model};
 
 /// What is inside a part.
@@ -105,6 +106,8 @@ pub struct FaceMeasures {
     pub area: f64,
     /// Bound on its error by the quadrature's own estimate.
     pub area_error: f64,
+    /// What it adds to the volume by the divergence theorem: that of the cone from the origin.
+    pub flux: f64,
     /// Its centroid.
     pub centroid: [f64; 3],
     /// Greatest distance of its edges from its surface.
@@ -160,11 +163,11 @@ pub fn measure_face(model: &Model, face: FaceId) -> Option<FaceMeasures> {
     let brep = &model.brep;
     let body = brep.shells[brep.faces[face].shell].body;
     let quadrature = Quadrature::exact(uncertainty(model, body));
-    let reference = mass_properties::middle(brep, body);
-    let found = mass_properties::of_face(brep, face, &quadrature, reference).ok()?;
+    let found = mass_properties::of_face(brep, face, &quadrature, Point3::origin()).ok()?;
     Some(FaceMeasures {
         area: found.area(),
         area_error: found.area_error(),
+        flux: found.volume(),
         centroid: found.area_centroid().coords.into(),
         gap: found.gap(),
     })

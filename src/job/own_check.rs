@@ -8,9 +8,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::brep::check::{self, Finding};
+use crate::brep::{Arena, BodyId, FaceId, VertexId};
 use crate::diagnostic::Severity;
 use crate::document::Document;
-use crate::brep::{Arena, BodyId, FaceId, VertexId};
 use crate::model::{ChangeSet, Model, Origin};
 
 /// Distance below which points count as one in a file that does not say: a micrometre, finer than any

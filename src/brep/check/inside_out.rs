@@ -89,13 +89,7 @@ impl Fan {
 }
 
 /// Looks at the volume of a solid whose shells are closed and whose faces are all known.
-pub(super) fn check_body(
-    brep: &Brep,
-    id: BodyId,
-    fan: &Fan,
-    tolerance: f64,
-    findings: &mut Vec<Finding>,
-) {
+pub(super) fn check_body(brep: &Brep, id: BodyId, fan: &Fan, tolerance: f64, findings: &mut Vec<Finding>) {
     let body = &brep.bodies[id];
     let closed = |shell: &Shell| shell.closed && !shell.faces.is_empty();
     if fan.is_plainly_positive() {

@@ -20,18 +20,18 @@ mod vertex_off_edge;
 use super::{BodyId, Brep, FaceId, LoopSampling, ParameterLoop, parameter_loops_with};
 use crate::diagnostic::Severity;
 use crate::math::Point3;
-use inside_out::Fan;
-use limits::Limits;
-use std::collections::BTreeSet;
-use survey::Survey;
 pub use crossing::{OverlappingBounds, SelfCrossingLoop};
 pub use degenerate_edge::{DegenerateEdge, Gap};
 pub use edge_off_surface::EdgeOffSurface;
 pub use edge_use::{CrowdedEdge, FreeEdge, OneWayEdge, OpenShell, TurnedFace};
+use inside_out::Fan;
 pub use inside_out::{InconsistentSense, MissingSeam, SliverFace, SolidInsideOut};
+use limits::Limits;
 pub use open_loop::OpenLoop;
 pub use orientation::{BoundKind, ReversedLoop};
 pub use pcurve_off_edge::PcurveOffEdge;
+use std::collections::BTreeSet;
+use survey::Survey;
 pub use vertex_off_edge::VertexOffEdge;
 
 /// A violated fact.
@@ -188,11 +188,7 @@ pub fn check(brep: &Brep, tolerance: &dyn Fn(BodyId) -> f64) -> Vec<Finding> {
 /// As [`check`], of some faces with their edges, and of the shells that these are in: for what an operation
 /// has changed. The volume of solids is not looked at.
 #[must_use]
-pub fn check_faces(
-    brep: &Brep,
-    faces: &BTreeSet<FaceId>,
-    tolerance: &dyn Fn(BodyId) -> f64,
-) -> Vec<Finding> {
+pub fn check_faces(brep: &Brep, faces: &BTreeSet<FaceId>, tolerance: &dyn Fn(BodyId) -> f64) -> Vec<Finding> {
     let survey = Survey::new(brep);
     let mut findings = Vec::new();
     for (id, body) in brep.bodies.iter() {
@@ -225,8 +221,7 @@ fn check_face(
     open_loop::check(brep, face, tolerance, findings);
     pcurve_off_edge::check(survey, face, limits, findings);
     let sampling = LoopSampling::of_tolerance(tolerance);
-    let loops =
-        parameter_loops_with(brep, face, &sampling, &|edge| survey.points(edge)).unwrap_or_default();
+    let loops = parameter_loops_with(brep, face, &sampling, &|edge| survey.points(edge)).unwrap_or_default();
     edge_off_surface::check(face, &loops, limits, findings);
     orientation::check(brep, face, &loops, findings);
     degenerate_edge::gaps(survey, face, limits, findings);

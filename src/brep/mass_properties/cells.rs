@@ -73,12 +73,12 @@ impl Cells {
 
     /// Lines that columns cross between two values.
     pub(super) fn rows_between(&self, low: f64, high: f64) -> Vec<f64> {
-        self.rows.iter().copied().filter(|&x| x > low && x < high).collect()
+        self.rows.iter().copied().filter(|&x| x >= low && x <= high).collect()
     }
 
     /// Lines along columns between two values.
     pub(super) fn strips_between(&self, low: f64, high: f64) -> Vec<f64> {
-        self.strips.iter().copied().filter(|&x| x > low && x < high).collect()
+        self.strips.iter().copied().filter(|&x| x >= low && x <= high).collect()
     }
 
     /// Books what lies between the base and a piece of the boundary that stays in one cell, given by its
@@ -88,9 +88,9 @@ impl Cells {
         let (low, high) = (self.strips[strip], self.strips[strip + 1]);
         let slack = SAME * (high - low);
         let snap = |x: f64| {
-            if x - low <= slack {
+            if (x - low).abs() <= slack {
                 low
-            } else if high - x <= slack {
+            } else if (x - high).abs() <= slack {
                 high
             } else {
                 x
@@ -98,8 +98,7 @@ impl Cells {
         };
         let (from, to) = (snap(from), snap(to));
         if row != self.base && from != to {
-            let (rows, up) =
-                if row > self.base { ((self.base, row), 1.0) } else { ((row, self.base), -1.0) };
+            let (rows, up) = if row > self.base { ((self.base, row), 1.0) } else { ((row, self.base), -1.0) };
             let (from, to, way) = if from <= to { (from, to, 1.0) } else { (to, from, -1.0) };
             self.covers[strip].push(Cover { from, to, sign: up * way, rows });
         }

@@ -191,7 +191,9 @@ fn points_of(surface: &Surface, along: Along) -> usize {
             let rational = if nurbs.is_rational() { RATIONAL } else { 0 };
             (knots.degree() + BEYOND + rational).clamp(4, MAX_POINTS)
         }
-        (Surface::Trimmed { basis, .. } | Surface::CurveBounded { basis }, _) => points_of(basis, along).max(4),
+        (Surface::Trimmed { basis, .. } | Surface::CurveBounded { basis }, _) => {
+            points_of(basis, along).max(4)
+        }
         _ => QUARTER,
     }
 }

@@ -343,8 +343,11 @@ impl<'a> Region<'a> {
     fn around(&self, foot: &Foot<'_>, boundary: &[Path<'_>], base: f64) -> (Sums, Sums) {
         let (mut sum, mut errors) = (Sums::ZERO, Sums::ZERO);
         // Lines of analytic surfaces are no breaks, and their columns cost little.
-        let mut cells =
-            if is_analytic(self.surface) { None } else { self.extent(boundary).map(|e| self.cells(&e, base)) };
+        let mut cells = if is_analytic(self.surface) {
+            None
+        } else {
+            self.extent(boundary).map(|e| self.cells(&e, base))
+        };
         for path in boundary {
             let (part, error) = self.along(foot, path, base, cells.as_mut());
             sum += part;

@@ -39,6 +39,8 @@ pub(super) struct Foot<'a> {
 /// Speed of one parameter line against the other below which the parameter cannot be found: rounding of a
 /// projection, with a margin.
 const SINGULAR: f64 = 1e-9;
+/// Cosine between the way to a point and a tangent above which a foot at a border is held there.
+const HELD: f64 = 1e-6;
 /// Steps in the search for a knot line's crossing.
 const CROSSING_STEPS: usize = 40;
 /// Part of an edge's range within which a crossing is found, and two breaks are one.
@@ -71,6 +73,19 @@ impl<'a> Foot<'a> {
             _ => x,
         };
         (wrap(u, u0, self.periods.0), wrap(v, v0, self.periods.1))
+    }
+}
+
+impl Foot<'_> {
+    /// Whether the foot of a point is held at an end of `u` and of `v`: it stands there, and the surface, were it
+    /// longer, would come nearer.
+    fn held(&self, (u, v): Place, slope: (f64, f64), metric: (f64, f64, f64), away: f64) -> (bool, bool) {
+        let (us, vs) = self.surface.domain();
+        let one = |x: f64, (low, high): (f64, f64), wraps: bool, slope: f64, square: f64| {
+            let counts = slope.abs() > HELD * square.sqrt() * away;
+            !wraps && counts && ((x <= low && slope > 0.0) || (x >= high && slope < 0.0))
+        };
+        (one(u, us, self.wrap.u, slope.0, metric.0), one(v, vs, self.wrap.v, slope.1, metric.2))
     }
 }
 
@@ -121,22 +136,41 @@ impl EdgePath<'_> {
     }
 
     /// The place of the curve's point and how it moves with the curve's parameter.
+    ///
+    /// The foot of a point off the surface moves by the Hessian of the distance, not by the metric alone; at a
+    /// border that holds it, along the border.
     pub(super) fn place_and_speed(&self, foot: &Foot<'_>, t: f64) -> (Place, Place) {
         let place = self.place(foot, t);
         let (u, v) = foot.surface_place(place);
         let d = foot.surface.derivatives(u, v);
+        let off = d.point - self.curve.point_wrapped(t);
         let along = self.curve.derivatives(self.curve.wrapped_parameter(t))[1];
-        let (e, f, g) = (d.du.norm_squared(), d.du.dot(&d.dv), d.dv.norm_squared());
-        let (a, b) = (along.dot(&d.du), along.dot(&d.dv));
-        let determinant = e * g - f * f;
-        let speed = if determinant > SINGULAR * SINGULAR * e * g {
-            ((a * g - b * f) / determinant, (b * e - a * f) / determinant)
-        } else if e >= g && e > 0.0 {
-            (a / e, 0.0)
-        } else if g > 0.0 {
-            (0.0, b / g)
-        } else {
-            (0.0, 0.0)
+        let metric = (d.du.norm_squared(), d.du.dot(&d.dv), d.dv.norm_squared());
+        let bent = (metric.0 + off.dot(&d.duu), metric.1 + off.dot(&d.duv), metric.2 + off.dot(&d.dvv));
+        let way = (along.dot(&d.du), along.dot(&d.dv));
+        let alone = |way: f64, bent: f64, metric: f64| {
+            if bent > 0.0 {
+                way / bent
+            } else if metric > 0.0 {
+                way / metric
+            } else {
+                0.0
+            }
+        };
+        let held = foot.held((u, v), (off.dot(&d.du), off.dot(&d.dv)), metric, off.norm());
+        let speed = match held {
+            (true, true) => (0.0, 0.0),
+            (true, false) => (0.0, alone(way.1, bent.2, metric.2)),
+            (false, true) => (alone(way.0, bent.0, metric.0), 0.0),
+            (false, false) => {
+                solved(bent, metric, way).or_else(|| solved(metric, metric, way)).unwrap_or_else(|| {
+                    if metric.0 >= metric.2 {
+                        (alone(way.0, bent.0, metric.0), 0.0)
+                    } else {
+                        (0.0, alone(way.1, bent.2, metric.2))
+                    }
+                })
+            }
         };
         (place, speed)
     }
@@ -196,6 +230,14 @@ impl EdgePath<'_> {
         }
         middle
     }
+}
+
+/// The solution of a symmetric pair of equations, where it is definite against a metric.
+fn solved(matrix: (f64, f64, f64), metric: (f64, f64, f64), way: (f64, f64)) -> Option<(f64, f64)> {
+    let (e, f, g) = matrix;
+    let determinant = e * g - f * f;
+    let definite = e > 0.0 && g > 0.0 && determinant > SINGULAR * SINGULAR * metric.0 * metric.2;
+    definite.then(|| ((way.0 * g - way.1 * f) / determinant, (way.1 * e - way.0 * f) / determinant))
 }
 
 /// The boundary of one loop, closed but for its winding.
