@@ -28,5 +28,6 @@ pub mod schema;
 pub mod select;
 mod select_curve;
 pub mod selector;
+pub mod stale_property;
 
 pub use file::Job;

@@ -7,6 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::stale_property::stale_properties;
 use crate::brep::check::{self, Finding};
 use crate::brep::{Arena, BodyId, FaceId, VertexId};
 use crate::diagnostic::Severity;
@@ -69,8 +70,12 @@ impl std::fmt::Display for OwnFinding {
 /// stretches its gaps with everything else.
 #[must_use]
 pub fn own_findings(document: &Document, model: &Model, growth: f64) -> Vec<OwnFinding> {
-    let findings = check::check(&model.brep, &|body| growth * tolerance(model, body));
-    findings.iter().map(|finding| describe(document, model, finding)).collect()
+    let tolerance = |body| growth * tolerance(model, body);
+    let findings = check::check(&model.brep, &tolerance);
+    let mut all: Vec<OwnFinding> =
+        findings.iter().map(|finding| describe(document, model, finding)).collect();
+    all.extend(stale_properties(document, model, &tolerance));
+    all
 }
 
 /// As [`own_findings`], of some faces and their shells: for what an operation has changed.

@@ -74,6 +74,12 @@ impl Quadrature {
         Self { tolerance, target: Self::EXACT, pieces: usize::MAX }
     }
 
+    /// Good to a millionth or better, where surfaces are smooth between their knots.
+    #[must_use]
+    pub fn good(tolerance: f64) -> Self {
+        Self { tolerance, target: 1e-8, pieces: usize::MAX }
+    }
+
     /// Good to some parts in a hundred, at a small part of the cost: to tell a sign.
     #[must_use]
     pub fn rough(tolerance: f64) -> Self {
