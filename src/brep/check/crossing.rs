@@ -39,7 +39,7 @@ const STEPS: usize = 24;
 /// Distance from the ends of edges, in tolerances, within which edges may meet.
 const AT_ENDS: f64 = 10.0;
 
-/// Part of a chord at its ends where nothing crosses.
+/// Part of a chord by which a crossing may miss its ends.
 const INSIDE: f64 = 1e-9;
 /// Sine of the angle below which edges run along each other and do not cross.
 const ALONG: f64 = 1e-3;
@@ -77,6 +77,10 @@ pub(super) fn check(
                 continue;
             }
             let Some(crossing) = chords_cross(survey.brep, a, b) else { continue };
+            // Neighbours share an end; what only touches there does not cross.
+            if at_end(survey.brep, &crossing, AT_ENDS * tolerance) {
+                continue;
+            }
             near += 1;
             if let Some(place) = edges_meet(survey, crossing.0, crossing.1, tolerance) {
                 told.push(key);
@@ -144,14 +148,23 @@ fn chords_cross(brep: &Brep, a: &Chord, b: &Chord) -> Option<(OnEdge, OnEdge)> {
     let cross = |x: (f64, f64), y: (f64, f64)| x.0 * y.1 - x.1 * y.0;
     let away = (q.0 - p.0, q.1 - p.1);
     let (share_a, share_b) = (cross(away, s) / cross(r, s), cross(away, r) / cross(r, s));
-    // Neighbours share an end; what only touches does not cross.
-    let within = |x: f64| x > INSIDE && x < 1.0 - INSIDE;
+    // Samples may stand where edges cross, so that chords cross at their ends.
+    let within = |x: f64| (-INSIDE..=1.0 + INSIDE).contains(&x);
     if !(within(share_a) && within(share_b)) {
         return None;
     }
     let t = a.from.t + share_a * (a.t_end - a.from.t);
     let u = b.from.t + share_b * (b.t_end - b.from.t);
     Some(((edge_a, t), (edge_b, u)))
+}
+
+/// Whether two edges that cross at given parameters do so at the ends of one.
+fn at_end(brep: &Brep, (a, b): &(OnEdge, OnEdge), slack: f64) -> bool {
+    [a, b].into_iter().any(|&(edge, t)| {
+        let Some(curve) = brep.curve_of(edge).read() else { return true };
+        let (place, edge) = (curve.point_wrapped(t), &brep.edges[edge]);
+        [edge.start, edge.end].into_iter().any(|end| (brep.vertices[end].point - place).norm() <= slack)
+    })
 }
 
 /// The point near given parameters where two edges meet away from their ends; chords may cross where curves do

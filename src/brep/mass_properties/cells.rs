@@ -97,7 +97,7 @@ impl Cells {
             }
         };
         let (from, to) = (snap(from), snap(to));
-        if row != self.base && from != to {
+        if row != self.base && from != to && from.is_finite() && to.is_finite() {
             let (rows, up) = if row > self.base { ((self.base, row), 1.0) } else { ((row, self.base), -1.0) };
             let (from, to, way) = if from <= to { (from, to, 1.0) } else { (to, from, -1.0) };
             self.covers[strip].push(Cover { from, to, sign: up * way, rows });

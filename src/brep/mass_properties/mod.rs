@@ -465,6 +465,8 @@ impl<'a> Region<'a> {
                 all.extend(strips(x.min(y), x.max(y)).iter().map(|line| (line - x) / (y - x)));
                 let (x, y) = (second(*a), second(*b));
                 all.extend(rows(x.min(y), x.max(y)).iter().map(|line| (line - x) / (y - x)));
+                // A path along a line meets all of it or nothing.
+                all.retain(|part| (0.0..=1.0).contains(part));
                 all.sort_by(f64::total_cmp);
                 all.dedup();
                 all

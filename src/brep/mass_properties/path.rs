@@ -184,7 +184,8 @@ impl EdgePath<'_> {
         for (pick, lines) in lines {
             for pair in self.places.windows(2) {
                 let (x, y) = (pick(pair[0].1), pick(pair[1].1));
-                for line in lines(x.min(y), x.max(y)) {
+                // A path along a line never crosses it.
+                for line in lines(x.min(y), x.max(y)).into_iter().filter(|_| x != y) {
                     breaks.push(self.crossing(foot, *pick, line, (pair[0].0, x), (pair[1].0, y)));
                 }
             }
