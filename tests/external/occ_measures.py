@@ -11,6 +11,7 @@ import sys
 import time
 
 import OCP.collections
+from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepGProp import BRepGProp
@@ -50,6 +51,17 @@ def subshapes(shape, kind):
     return [once.FindKey(at) for at in range(1, once.Extent() + 1)]
 
 
+def edges_of_faces(faces):
+    """Count of the edges that bound faces, each once; not those that are a point, which healing adds at poles."""
+    edge_of = getattr(TopoDS, "Edge_s", None) or TopoDS.Edge
+    once = OCP.collections.IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher()
+    for face in faces:
+        for edge in subshapes(face, TopAbs_EDGE):
+            if not BRep_Tool.Degenerated_s(edge_of(edge)):
+                once.Add(edge)
+    return once.Extent()
+
+
 def mass(shape, volume):
     """Volume and area with the centroid of the volume, or of the area."""
     area, solid = GProp_GProps(), GProp_GProps()
@@ -85,7 +97,7 @@ def measure(path):
             "solids": len(solids),
             "shells": len(shells),
             "faces": len(faces),
-            "edges": len(subshapes(shape, TopAbs_EDGE)),
+            "edges": edges_of_faces(faces),
         },
         "surfaces": kinds,
         "solids": [{**mass(solid, True), "faces": len(subshapes(solid, TopAbs_FACE))} for solid in solids],

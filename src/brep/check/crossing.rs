@@ -2,6 +2,7 @@
 //! outer one.
 
 use super::Finding;
+use super::limits::Limits;
 use super::survey::Survey;
 use crate::brep::{Brep, EdgeId, FaceId, LoopId, LoopPoint, ParameterLoop};
 use crate::geometry::{Curve, Surface};
@@ -58,9 +59,11 @@ pub(super) fn check(
     survey: &Survey<'_>,
     face: FaceId,
     loops: &[ParameterLoop],
-    tolerance: f64,
+    limits: &Limits,
     findings: &mut Vec<Finding>,
 ) {
+    // Where vertices are off their edges, these cross beside them.
+    let ends = limits.slight.max(AT_ENDS * limits.tolerance);
     let mut chords: Vec<Chord> =
         loops.iter().enumerate().flat_map(|(of, points)| chords_of(survey, of, points)).collect();
     chords.sort_by(|a, b| a.low().total_cmp(&b.low()));
@@ -78,11 +81,11 @@ pub(super) fn check(
             }
             let Some(crossing) = chords_cross(survey.brep, a, b) else { continue };
             // Neighbours share an end; what only touches there does not cross.
-            if at_end(survey.brep, &crossing, AT_ENDS * tolerance) {
+            if at_end(survey, &crossing, ends) {
                 continue;
             }
             near += 1;
-            if let Some(place) = edges_meet(survey, crossing.0, crossing.1, tolerance) {
+            if let Some(place) = edges_meet(survey, crossing, limits.tolerance, ends) {
                 told.push(key);
                 let bound = loops[key.1].of;
                 findings.push(if key.0 == key.1 {
@@ -159,17 +162,26 @@ fn chords_cross(brep: &Brep, a: &Chord, b: &Chord) -> Option<(OnEdge, OnEdge)> {
 }
 
 /// Whether two edges that cross at given parameters do so at the ends of one.
-fn at_end(brep: &Brep, (a, b): &(OnEdge, OnEdge), slack: f64) -> bool {
+fn at_end(survey: &Survey<'_>, (a, b): &(OnEdge, OnEdge), slack: f64) -> bool {
+    let brep = survey.brep;
     [a, b].into_iter().any(|&(edge, t)| {
         let Some(curve) = brep.curve_of(edge).read() else { return true };
-        let (place, edge) = (curve.point_wrapped(t), &brep.edges[edge]);
-        [edge.start, edge.end].into_iter().any(|end| (brep.vertices[end].point - place).norm() <= slack)
+        let (place, of) = (curve.point_wrapped(t), &brep.edges[edge]);
+        let vertices = [of.start, of.end].map(|end| brep.vertices[end].point);
+        let points = survey.edge(edge).map_or(&[][..], |sampled| &sampled.points);
+        let ends = points.first().into_iter().chain(points.last()).map(|at| at.point);
+        vertices.into_iter().chain(ends).any(|end| (end - place).norm() <= slack)
     })
 }
 
 /// The point near given parameters where two edges meet away from their ends; chords may cross where curves do
 /// not.
-fn edges_meet(survey: &Survey<'_>, a: OnEdge, b: OnEdge, tolerance: f64) -> Option<Point3<f64>> {
+fn edges_meet(
+    survey: &Survey<'_>,
+    (a, b): (OnEdge, OnEdge),
+    tolerance: f64,
+    ends: f64,
+) -> Option<Point3<f64>> {
     let brep = survey.brep;
     let (curve_a, curve_b) = (brep.curve_of(a.0).read()?, brep.curve_of(b.0).read()?);
     let (mut t, mut u) = (a.1, b.1);
@@ -178,8 +190,7 @@ fn edges_meet(survey: &Survey<'_>, a: OnEdge, b: OnEdge, tolerance: f64) -> Opti
         t = curve_a.parameter_of(&curve_b.point_wrapped(u), Some(t));
     }
     let (p, q) = (curve_a.point_wrapped(t), curve_b.point_wrapped(u));
-    let ends = [a.0, b.0].map(|edge| [brep.edges[edge].start, brep.edges[edge].end]);
-    let at_end = ends.iter().flatten().any(|&v| (brep.vertices[v].point - p).norm() <= AT_ENDS * tolerance);
+    let at_end = at_end(survey, &((a.0, t), (b.0, u)), ends);
     let on_edge = |edge: EdgeId, t: f64| {
         survey.range(edge).is_some_and(|r| t >= r.start.min(r.end) && t <= r.start.max(r.end))
     };

@@ -8,7 +8,7 @@ pub(super) struct Limits {
     /// Beyond it a fact is violated: the file's uncertainty.
     pub(super) tolerance: f64,
     /// Up to it other programs take a gap for the edge's own tolerance.
-    slight: f64,
+    pub(super) slight: f64,
 }
 
 /// Part of a body's size that its numbers resolve: the digits that exporters print. An uncertainty below says

@@ -225,7 +225,7 @@ fn check_face(
     edge_off_surface::check(face, &loops, limits, findings);
     orientation::check(brep, face, &loops, findings);
     degenerate_edge::gaps(survey, face, limits, findings);
-    crossing::check(survey, face, &loops, tolerance, findings);
+    crossing::check(survey, face, &loops, limits, findings);
     inside_out::check_face(brep, face, &loops, tolerance, findings);
     loops
 }

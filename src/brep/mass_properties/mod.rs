@@ -17,7 +17,7 @@ mod path;
 mod tests;
 
 use super::{
-    BodyId, Brep, FaceId, LoopSampling, ParameterLoop, ParameterLoopError, ShellId, parameter_loops,
+    BodyId, Brep, EdgeId, FaceId, LoopSampling, ParameterLoop, ParameterLoopError, ShellId, parameter_loops,
 };
 use crate::geometry::Surface;
 use crate::math::{BoundingBox, Point3};
@@ -27,6 +27,7 @@ use column::{Along, Column, between, breaks};
 pub use moments::MassProperties;
 use moments::Sums;
 use path::{Foot, Path, Place, paths};
+use std::collections::BTreeMap;
 
 /// Why something has no mass properties.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -120,8 +121,12 @@ pub fn of_shell(
     reference: Point3<f64>,
 ) -> Result<MassProperties, MassPropertiesError> {
     let mut sum = MassProperties::none(reference);
+    let uses = uses(brep, shell);
     for &face in &brep.shells[shell].faces {
-        sum += of_face(brep, face, quadrature, reference)?;
+        let loops = parameter_loops(brep, face, &LoopSampling::of_tolerance(quadrature.tolerance))
+            .map_err(|source| MassPropertiesError::Loops { face, source })?;
+        let side = side(brep, face, &uses);
+        sum += within(brep, face, &loops, quadrature, reference, side)?;
     }
     Ok(if brep.shells[shell].forward { sum } else { sum.reversed() })
 }
@@ -154,6 +159,43 @@ pub fn of_loops(
     quadrature: &Quadrature,
     reference: Point3<f64>,
 ) -> Result<MassProperties, MassPropertiesError> {
+    within(brep, face, loops, quadrature, reference, Side::OfSense)
+}
+
+/// Which of the two says where the outside of a face is, when its bounds run the wrong way round for its sense.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Side {
+    /// The sense: the bounds are turned.
+    OfSense,
+    /// The bounds, which run as its neighbours' do: the sense is wrong.
+    OfBounds,
+}
+
+/// Directions in which the faces of a shell use each edge: as it runs, and against.
+fn uses(brep: &Brep, shell: ShellId) -> BTreeMap<EdgeId, [usize; 2]> {
+    let mut uses: BTreeMap<EdgeId, [usize; 2]> = BTreeMap::new();
+    for coedge in brep.shells[shell].faces.iter().flat_map(|&face| brep.coedges_of(face)) {
+        let of = &brep.coedges[coedge];
+        uses.entry(of.edge).or_default()[usize::from(of.forward == brep.loops[of.in_loop].forward)] += 1;
+    }
+    uses
+}
+
+/// Whether every edge of a face has a neighbour that runs against it.
+fn side(brep: &Brep, face: FaceId, uses: &BTreeMap<EdgeId, [usize; 2]>) -> Side {
+    let mut edges = brep.coedges_of(face).map(|coedge| brep.coedges[coedge].edge).peekable();
+    let paired = edges.peek().is_some() && edges.all(|edge| uses.get(&edge) == Some(&[1, 1]));
+    if paired { Side::OfBounds } else { Side::OfSense }
+}
+
+fn within(
+    brep: &Brep,
+    face: FaceId,
+    loops: &[ParameterLoop],
+    quadrature: &Quadrature,
+    reference: Point3<f64>,
+    side: Side,
+) -> Result<MassProperties, MassPropertiesError> {
     let Some(surface) = brep.surface_of(face).read() else {
         let source = ParameterLoopError::UnreadSurface { entity: String::new() };
         return Err(MassPropertiesError::Loops { face, source });
@@ -176,7 +218,7 @@ pub fn of_loops(
         sums += whole.turned(1.0, sign);
         errors += error;
     } else if sums.0[0] < 0.0 {
-        sums = sums * -1.0;
+        sums = sums.turned(-1.0, if side == Side::OfBounds { 1.0 } else { -1.0 });
     }
     let gap = loops.iter().map(|l| l.gap).fold(0.0, f64::max);
     Ok(MassProperties { reference, sums, errors, gap })
