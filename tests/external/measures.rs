@@ -1,7 +1,8 @@
 //! Counts, surfaces, volume, area and centroid of every STEP file of the corpus against Open CASCADE.
 //!
 //! Both measure each solid once, in millimetres. Within [`AGREED`] there is nothing to say; what differs by more
-//! stands in [`DIFFERENCES`] with its explanation, and a row that is not needed any more fails as well.
+//! stands in a table with its explanation, and a row that is not needed any more fails as well. The evidence is
+//! in `docs/open-cascade-comparison.md`.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -23,58 +24,36 @@ const AGREED: f64 = 1e-6;
 /// Why the two differ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Why {
-    /// The file's edges lie off its surfaces by up to some micrometres or more: where a face ends is open to that
-    /// extent. Open CASCADE widens the tolerance of these edges to the same gap.
-    EdgesOffSurface,
-    /// Open CASCADE's quadrature does not reach the accuracy it was asked for on faces that splines bound, also where
-    /// edges lie on their surface to 1e-8. Its figure for a disc of radius 10 in `dm1-id-214.stp` is 314.16019, where
-    /// π r² is 314.15927; for a plane of `s1-c5-214/MAINBODY_BACK.stp` 1661.7593, where polygons of 200, 2,000 and
-    /// 20,000 points an edge give 1661.8272, 1661.8956 and 1661.8962, and we 1661.89625.
-    TheirQuadrature,
-    /// Open CASCADE takes three quarters of a sphere for the quarter that the bound runs round.
+    /// Open CASCADE bounds faces by parameter curves that it fits to the edges within a tolerance. Polygons of
+    /// thousands of points on the same edges, projected to the same surfaces, converge to our figures.
+    TheirFittedPcurves,
+    /// Open CASCADE takes three quarters of a sphere for the quarter that the bound runs round: of two faces that
+    /// mirror each other it measures one as we do.
     TheirOtherSide,
-    /// Not looked into yet.
-    Open,
 }
 
 /// File, the greatest relative difference of its solids that is excused, and why.
-const DIFFERENCES: [(&str, f64, Why); 13] = [
-    ("13_5_hinge_R_assy.stp", 2e-5, Why::EdgesOffSurface),
-    ("Amazing Hand Parts - Proximal_Shell.step", 2e-4, Why::EdgesOffSurface),
-    ("ExpansionCard_ThreadedInsert.stp", 2e-6, Why::EdgesOffSurface),
-    ("MX Series-Cherry Key.step", 2e-5, Why::Open),
-    ("Moving_Jaw_08d v1.step", 4e-6, Why::Open),
-    ("dm1-id-214.stp", 3e-6, Why::TheirQuadrature),
-    ("flipping_joystick_assembly.stp", 6e-6, Why::EdgesOffSurface),
-    ("issue153.stp", 2e-3, Why::EdgesOffSurface),
-    ("lower_leg_structure_base.STEP", 4e-6, Why::Open),
-    ("s1-c5-214/HEAD_BACK.stp", 1.0, Why::TheirOtherSide),
-    ("s1-c5-214/MAINBODY_BACK.stp", 3e-4, Why::TheirQuadrature),
-    ("s1-c5-214/MAINBODY_FRONT.stp", 2e-4, Why::TheirQuadrature),
-    ("top_cover_r_full_framework_logo.stp", 2e-6, Why::Open),
+const DIFFERENCES: [(&str, f64, Why); 0] = [];
+
+/// Edges of faces, ours and theirs, where they cut closed surfaces at seams that the file does without.
+const EDGES: [(&str, usize, usize); 6] = [
+    ("hole_model.stp", 105, 162),
+    ("lower_leg_structure_base.STEP", 814, 820),
+    ("Amazing Hand Parts - R-Top_Shell.step", 245, 257),
+    ("Amazing Hand Parts - R-Palm_Shell.step", 335, 347),
+    ("Amazing Hand Parts - Proximal_Shell.step", 56, 68),
+    ("Amazing Hand Parts - Distal_Shell.step", 82, 92),
 ];
 
-/// Files whose great freeform faces take minutes in a build without optimisation, or which Open CASCADE does not
-/// end with; `DME.stp` it refuses.
-const LEFT_OUT: [&str; 13] = [
-    "Amazing Hand Parts - Distal_Shell.step",
-    "Amazing Hand Parts - R-Palm_Shell.step",
-    "Amazing Hand Parts - R-Top_Shell.step",
-    "Amazing Hand base.STEP",
-    "DME.stp",
-    "IEA_15MW_CFD.stp",
-    "Wrist_Roll_Pitch_SO101.step",
-    "boxed_sphere.step",
-    "magnet_geom_with_casing.step",
-    "nacelle.stp",
-    "race_car_nose.stp",
-    "repatch-hpdc.stp",
-    "tail_section_asm.stp",
-];
+/// Shells, ours and theirs: the faces of the two closed shells share no edge, and they make a shell of each.
+const SHELLS: [(&str, usize, usize); 1] = [("race_car_nose.stp", 2, 141)];
 
-/// Edges are counted by use; Open CASCADE adds seams, and splits and joins edges while it heals. Where shells differ
-/// the file says closed shells whose faces share no edge.
-const COUNTS: [&str; 2] = ["solids", "faces"];
+/// Open CASCADE refuses it for a byte before its first line.
+const REFUSED: [&str; 1] = ["DME.stp"];
+
+/// Bytes of the largest file that is measured in every run: greater ones take minutes without optimisation.
+/// `RESURF_OCC_ALL=1` lifts it.
+const EVERY_RUN: u64 = 400_000;
 
 fn read(path: &Path) -> Model {
     let bytes = std::fs::read(path).expect("a file of the corpus");
@@ -121,6 +100,25 @@ fn worst(ours: &[(f64, f64, [f64; 3])], mut others: Vec<(f64, f64, [f64; 3])>) -
     worst
 }
 
+/// Counts that differ and are not explained, or are and do not.
+fn other_counts(file: &str, ours: &Inventory, theirs: &Value) -> Vec<String> {
+    let counts = [
+        ("solids", ours.solids, None),
+        ("shells", ours.shells, SHELLS.iter().find(|row| row.0 == file)),
+        ("faces", ours.faces, None),
+        ("edges", ours.edges, EDGES.iter().find(|row| row.0 == file)),
+    ];
+    let mut wrong = Vec::new();
+    for (word, own, known) in counts {
+        let expected = known.map_or((own, own), |row| (row.1, row.2));
+        let found = theirs[word].as_u64().and_then(|count| usize::try_from(count).ok());
+        if (own, found) != (expected.0, Some(expected.1)) {
+            wrong.push(format!("{file}: {own} {word}, and {found:?} by Open CASCADE"));
+        }
+    }
+    wrong
+}
+
 #[test]
 fn every_solid_measures_what_open_cascade_measures_or_is_explained() {
     let (Some(python), Some(corpus)) = (python(), support::corpus()) else { return };
@@ -129,8 +127,12 @@ fn every_solid_measures_what_open_cascade_measures_or_is_explained() {
         |path: &Path| path.strip_prefix(&folder).ok().map(|name| name.to_string_lossy().replace('\\', "/"));
     let mut wrong = Vec::new();
     let mut measured = 0;
+    let all = std::env::var("RESURF_OCC_ALL").is_ok_and(|value| value == "1");
     for path in support::corpus_step_files() {
-        let Some(file) = name(&path).filter(|name| !LEFT_OUT.contains(&name.as_str())) else { continue };
+        let Some(file) = name(&path) else { continue };
+        if !all && path.metadata().is_ok_and(|found| found.len() > EVERY_RUN) {
+            continue;
+        }
         let script = root().join("tests/external/occ_measures.py");
         let output = Command::new(&python).arg(script).arg(&path).output().expect("the interpreter starts");
         let text = String::from_utf8_lossy(&output.stdout).into_owned();
@@ -139,13 +141,10 @@ fn every_solid_measures_what_open_cascade_measures_or_is_explained() {
         let model = read(&path);
         let ours = Inventory::of(&model);
         if found["error"].is_string() {
-            assert_eq!(ours.faces, 0, "{file}: {found}");
+            assert!(ours.faces == 0 || REFUSED.contains(&file.as_str()), "{file}: {found}");
             continue;
         }
-        let counts = [ours.solids, ours.faces];
-        for (word, count) in COUNTS.iter().zip(counts) {
-            assert_eq!(found["counts"][word], count, "{file}: {word}");
-        }
+        wrong.extend(other_counts(&file, &ours, &found["counts"]));
         let kinds: BTreeMap<&str, usize> =
             ours.surfaces.iter().map(|(kind, count)| (*kind, *count)).collect();
         assert_eq!(found["surfaces"], serde_json::json!(kinds), "{file}");
@@ -160,5 +159,5 @@ fn every_solid_measures_what_open_cascade_measures_or_is_explained() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    assert!(measured > 40, "{measured}");
+    assert!(measured > 30, "{measured}");
 }
