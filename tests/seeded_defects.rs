@@ -205,8 +205,9 @@ fn defects_of_freeform_faces_are_called_by_their_names() {
     assert!(vertex.iter().any(|code| code == "vertex-off-edge" || code == "gap"), "{vertex:?}");
 }
 
-/// Sound by Open CASCADE's checker, which takes any gap that it has widened a tolerance for, and accused by us.
-const ACCUSED: [(&str, &str); 0] = [];
+/// Sound by Open CASCADE's checker, which takes any gap that it has widened a tolerance for, and accused by us: two
+/// edges are 0.08 mm off their cylinders in a file that claims 0.005 mm.
+const ACCUSED: [(&str, &str); 1] = [("HEAD_BACK.stp", "edge-off-surface")];
 
 #[test]
 fn no_good_file_is_accused() {

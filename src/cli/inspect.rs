@@ -83,11 +83,16 @@ fn body_line(body: &BodyMeasures) -> String {
     text + &body.unknown.as_ref().map(|reason| format!(" not measured: {reason}")).unwrap_or_default()
 }
 
+/// A number that people read; one next to nothing would be a long row of zeros.
+fn number(value: f64) -> String {
+    if value != 0.0 && value.abs() < 1e-6 { format!("{value:e}") } else { value.to_string() }
+}
+
 fn plain(contents: &Contents) -> String {
     let figures = &contents.figures;
     let mut text = String::new();
     let mut line = |name: &str, value: String| {
-        let _ = writeln!(text, "{name:<16}{value}");
+        let _ = writeln!(text, "{name:<15} {value}");
     };
     line("schema", figures.schema.join(", "));
     line("units", figures.units.join(", "));
@@ -98,7 +103,7 @@ fn plain(contents: &Contents) -> String {
         figures.surfaces.iter().map(|(kind, count)| format!("{kind} {count}")).collect();
     line("surfaces", surfaces.join(", "));
     if let Some([least, greatest]) = figures.vertex_extents {
-        let point = |[x, y, z]: [f64; 3]| format!("({x}, {y}, {z})");
+        let point = |[x, y, z]: [f64; 3]| format!("({}, {}, {})", number(x), number(y), number(z));
         line("vertices", format!("within {} to {}", point(least), point(greatest)));
     }
     for product in &contents.products {
@@ -127,8 +132,11 @@ fn plain(contents: &Contents) -> String {
     }
     for face in &contents.faces {
         let colour = face.colour.as_deref().unwrap_or("no colour");
-        let neighbours = face.neighbours.join(" ");
-        line("face", format!("{} {:?} {} {colour}, next to {neighbours}", face.id, face.name, face.surface));
+        let neighbours = match face.neighbours.as_slice() {
+            [] => "without neighbours".to_owned(),
+            neighbours => format!("next to {}", neighbours.join(" ")),
+        };
+        line("face", format!("{} {:?} {} {colour}, {neighbours}", face.id, face.name, face.surface));
     }
     text
 }

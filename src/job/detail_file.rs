@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, de};
 
 use super::file::LengthSetting;
-use super::selector::{NamePattern, instance};
+use super::selector::{NamePattern, Selector, instance};
 use crate::units::Length;
 
 /// Carry the detail of one curve onto another.
@@ -13,7 +13,7 @@ use crate::units::Length;
 pub struct DetailTransfer {
     /// The curve that gives detail.
     pub source: DetailSource,
-    /// The curve that is changed: one that belongs to no face.
+    /// What is changed: a curve that belongs to no face, or a face.
     #[serde(default)]
     pub target: DetailTarget,
     /// Levels of detail, counted from the finest, which is 1: `"all"` or a list.
@@ -62,6 +62,18 @@ impl DetailTransfer {
         if self.frame == FrameWord::Global && self.roll != 0.0 {
             return Err("`roll` turns about the target, which needs `frame = \"local\"`".to_owned());
         }
+        let target = &self.target;
+        if target.curve.is_some() && target.face.is_some() {
+            return Err("`target` has both a `curve` and a `face`; expected one of them".to_owned());
+        }
+        if target.face.is_none() && (target.direction.is_some() || target.across.is_some()) {
+            return Err("`direction` and `across` are of a face; expected `face` in `target`".to_owned());
+        }
+        if target.face.is_some() && self.ends == Some(EndsWord::Free) {
+            return Err("free ends would move the edges of the face; expected `position`, `tangent` or \
+                        `curvature`"
+                .to_owned());
+        }
         if !self.roll.is_finite() {
             return Err(format!("`roll` is {}; expected degrees", self.roll));
         }
@@ -93,8 +105,25 @@ pub struct DetailSource {
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct DetailTarget {
-    /// The target curve. Left out: the only free curve.
+    /// The target curve. Left out, and `face` too: the only free curve.
     pub curve: Option<CurveSelector>,
+    /// A face that detail is laid over, instead of a curve; its edges stay.
+    pub face: Option<Selector>,
+    /// Direction of the face in which the source runs.
+    pub direction: Option<DirectionWord>,
+    /// Part of the face's other parameter that gets detail, from 0 to 1. Left out: all of it.
+    pub across: Option<Interval>,
+}
+
+/// A direction of a surface's parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum DirectionWord {
+    /// The first.
+    #[default]
+    U,
+    /// The second.
+    V,
 }
 
 /// One curve.

@@ -2,22 +2,32 @@
 //! get their units.
 
 use super::detail_file::{
-    CurveSelector, DetailScale, DetailTransfer, EndsWord, FrameWord, LevelsSetting, OwnDetailWord,
+    CurveSelector, DetailScale, DetailTransfer, DirectionWord, EndsWord, FrameWord, LevelsSetting,
+    OwnDetailWord,
 };
 use super::operate::{OperateError, other_file};
-use super::select_curve;
+use super::selector::Selector;
+use super::{select, select_curve};
 use crate::model::Model;
-use crate::ops::detail_transfer::{Existing, Frame, LevelChoice, Params, Plan, Scale, Settings, plan};
+use crate::ops::detail_transfer::{
+    Direction, Existing, FaceTarget, Frame, LevelChoice, Params, Plan, Scale, Settings, Target, plan,
+};
 use crate::units::LengthUnit;
 
 /// Plans a transfer onto a model.
 pub(super) fn planned(model: &Model, words: &DetailTransfer) -> Result<Plan, OperateError> {
     let select = |model: &Model, selector: Option<&CurveSelector>| select_curve::one(model, selector);
-    let target = select(model, words.target.curve.as_ref()).map_err(OperateError::TargetCurve)?;
+    let target = match &words.target.face {
+        Some(face) => Target::Face(face_target(model, face, words)?),
+        None => Target::Curve(select(model, words.target.curve.as_ref()).map_err(OperateError::TargetCurve)?),
+    };
     let other = words.source.file.as_deref().map(other_file).transpose()?;
     let from = other.as_ref().unwrap_or(model);
     let source = select(from, words.source.curve.as_ref()).map_err(OperateError::SourceCurve)?;
-    let unit = unit_of(model);
+    let unit = match &target {
+        Target::Face(target) => Some(&model.context_of(target.face).length),
+        Target::Curve(_) => unit_of(model),
+    };
     let source_unit = match (unit, unit_of(from)) {
         (Some(target), Some(source)) => source.metres / target.metres,
         _ => 1.0,
@@ -42,6 +52,17 @@ pub(super) fn planned(model: &Model, words: &DetailTransfer) -> Result<Plan, Ope
         settings: settings(words),
     };
     Ok(plan(model, &params)?)
+}
+
+fn face_target(model: &Model, face: &Selector, words: &DetailTransfer) -> Result<FaceTarget, OperateError> {
+    Ok(FaceTarget {
+        face: select::one_face(model, Some(face)).map_err(OperateError::TargetFace)?,
+        direction: match words.target.direction.unwrap_or_default() {
+            DirectionWord::U => Direction::U,
+            DirectionWord::V => Direction::V,
+        },
+        across: words.target.across.map_or([0.0, 1.0], |part| part.0),
+    })
 }
 
 /// Free curves are in the units of the file's first context, the only one that nearly all files have.

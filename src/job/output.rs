@@ -15,11 +15,39 @@ pub struct FileError {
     pub source: std::io::Error,
 }
 
-/// A file that is written but does not stand in its place yet. Dropped, it vanishes.
+/// A file that is written but does not stand in its place yet. Dropped, it vanishes, and with it the folders
+/// that were made for it.
 #[derive(Debug)]
 pub struct Staged {
+    // The file goes before its folders do: fields are dropped in this order.
     temporary: NamedTempFile,
+    made: MadeFolders,
     place: PathBuf,
+}
+
+/// Folders that were missing, the innermost first. Dropped, they vanish unless something stands in them.
+#[derive(Debug, Default)]
+struct MadeFolders(Vec<PathBuf>);
+
+impl MadeFolders {
+    /// Makes a folder with all that it stands in.
+    fn make(folder: &Path) -> std::io::Result<Self> {
+        let missing = folder.ancestors().take_while(|path| !path.as_os_str().is_empty() && !path.exists());
+        let missing = missing.map(Path::to_owned).collect();
+        std::fs::create_dir_all(folder)?;
+        Ok(Self(missing))
+    }
+}
+
+impl Drop for MadeFolders {
+    fn drop(&mut self) {
+        for folder in &self.0 {
+            // One that is not empty stays, and those around it: somebody else uses it too.
+            if std::fs::remove_dir(folder).is_err() {
+                break;
+            }
+        }
+    }
 }
 
 impl Staged {
@@ -30,7 +58,7 @@ impl Staged {
     pub fn write(place: &Path, bytes: &[u8]) -> Result<Self, FileError> {
         let error = |source| FileError { path: place.to_owned(), source };
         let folder = place.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        std::fs::create_dir_all(folder).map_err(error)?;
+        let made = MadeFolders::make(folder).map_err(error)?;
         // The extension stays: other programs decide by it how to read the file.
         let extension = place.extension().map(|e| format!(".{}", e.to_string_lossy())).unwrap_or_default();
         let mut temporary = tempfile::Builder::new()
@@ -41,7 +69,7 @@ impl Staged {
             .map_err(error)?;
         temporary.write_all(bytes).map_err(error)?;
         temporary.as_file().sync_all().map_err(error)?;
-        Ok(Self { temporary, place: place.to_owned() })
+        Ok(Self { temporary, made, place: place.to_owned() })
     }
 
     /// Where the bytes are now.
@@ -55,8 +83,9 @@ impl Staged {
     /// # Errors
     /// [`FileError`] naming the place.
     pub fn commit(self) -> Result<(), FileError> {
-        let place = self.place;
-        self.temporary.persist(&place).map_err(|e| FileError { path: place, source: e.error })?;
+        let Self { temporary, mut made, place } = self;
+        temporary.persist(&place).map_err(|e| FileError { path: place, source: e.error })?;
+        made.0.clear();
         Ok(())
     }
 }
@@ -71,4 +100,22 @@ fn permissions() -> std::fs::Permissions {
 #[cfg(not(unix))]
 fn permissions() -> std::fs::Permissions {
     std::fs::Permissions::default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folders_made_for_a_file_stay_only_with_it() {
+        let root = tempfile::tempdir().expect("a folder for the test");
+        let place = root.path().join("a/b/part.step");
+        drop(Staged::write(&place, b"x").expect("written"));
+        assert!(!root.path().join("a").exists());
+        Staged::write(&place, b"x").and_then(Staged::commit).expect("written");
+        assert_eq!(std::fs::read(&place).expect("it stands there"), b"x");
+        let other = root.path().join("a/c/part.step");
+        drop(Staged::write(&other, b"x").expect("written"));
+        assert!(!root.path().join("a/c").exists() && place.exists());
+    }
 }

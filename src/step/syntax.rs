@@ -380,8 +380,26 @@ fn dot_token(bytes: &[u8], at: usize) -> (TokenKind, usize) {
     }
 }
 
+/// Whether a digit or a sign: what a number begins with but for the forbidden `.5`.
+#[inline]
+pub(super) fn may_begin_number(byte: u8) -> bool {
+    NUMBER_STARTS[usize::from(byte)]
+}
+
+/// Digits and signs.
+static NUMBER_STARTS: [bool; 256] = {
+    let mut table = [false; 256];
+    let mut byte = 0_usize;
+    while byte < table.len() {
+        table[byte] = matches!(byte as u8, b'0'..=b'9' | b'+' | b'-');
+        byte += 1;
+    }
+    table
+};
+
 /// Number at `at`, with the liberties that files take: `.5`, `1E5` without a point, lower-case `e`.
-fn number_token(bytes: &[u8], at: usize) -> (TokenKind, usize) {
+#[inline]
+pub(super) fn number_token(bytes: &[u8], at: usize) -> (TokenKind, usize) {
     let signed = at + usize::from(matches!(bytes[at], b'+' | b'-'));
     let whole = digits_end(bytes, signed);
     let mut end = whole;
@@ -406,6 +424,33 @@ fn number_token(bytes: &[u8], at: usize) -> (TokenKind, usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Numbers by the rule, a byte at a time.
+    fn number_by_rule(bytes: &[u8]) -> (TokenKind, usize) {
+        let digits = |at: usize| at + bytes[at..].iter().take_while(|byte| byte.is_ascii_digit()).count();
+        let signed = usize::from(matches!(bytes[0], b'+' | b'-'));
+        let whole = digits(signed);
+        let point = bytes.get(whole) == Some(&b'.');
+        let end = if point { digits(whole + 1) } else { whole };
+        if end - signed == usize::from(point) {
+            return (TokenKind::Junk, 1);
+        }
+        let exponent = bytes.get(end).filter(|byte| byte.eq_ignore_ascii_case(&b'e')).map(|_| {
+            let sign = end + 1 + usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
+            (sign, digits(sign.min(bytes.len())))
+        });
+        match exponent {
+            Some((sign, last)) if last > sign => (TokenKind::Real, last),
+            _ => (if point { TokenKind::Real } else { TokenKind::Integer }, end),
+        }
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn numbers_end_where_the_rule_says(text in "[-+0-9.][0-9]{0,9}[-+.0-9eE,/]{0,4}[0-9]{0,18}[.,eE)\\PC]{0,3}[0-9]{0,9}") {
+            proptest::prop_assert_eq!(number_token(text.as_bytes(), 0), number_by_rule(text.as_bytes()));
+        }
+    }
 
     #[test]
     fn runs_of_digits_end_at_the_first_other_byte() {

@@ -42,8 +42,9 @@ const AT_ENDS: f64 = 10.0;
 
 /// Part of a chord by which a crossing may miss its ends.
 const INSIDE: f64 = 1e-9;
-/// Sine of the angle below which edges run along each other and do not cross.
-const ALONG: f64 = 1e-3;
+/// Sine of the angle below which edges run along each other: where neighbours leave a vertex side by side, a gap that
+/// nobody minds makes them cross far from it.
+const ALONG: f64 = 0.05;
 
 /// A chord of a loop's polygon.
 struct Chord {

@@ -31,6 +31,9 @@ pub(super) enum Along {
     V,
 }
 
+/// Places and weights of a rule over `[-1, 1]`.
+type Rule = Vec<(f64, f64)>;
+
 /// Integrates along one parameter.
 pub(super) struct Column<'a> {
     pub(super) surface: &'a Surface,
@@ -39,7 +42,7 @@ pub(super) struct Column<'a> {
     fine: Vec<(f64, f64)>,
     coarse: Vec<(f64, f64)>,
     /// Rules across columns, for whole rectangles.
-    across: (Vec<(f64, f64)>, Vec<(f64, f64)>),
+    across: (Rule, Rule),
     pub(super) breaks: Vec<f64>,
     pub(super) period: Option<f64>,
     wraps: bool,

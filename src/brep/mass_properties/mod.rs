@@ -26,7 +26,7 @@ use cells::{Cells, Extent};
 use column::{Along, Column, between, breaks};
 pub use moments::MassProperties;
 use moments::Sums;
-use path::{Foot, Path, Place, paths};
+use path::{Foot, Path, Pick, Place, paths};
 use std::collections::BTreeMap;
 
 /// Why something has no mass properties.
@@ -497,8 +497,8 @@ impl<'a> Region<'a> {
             (None, Path::Edge(_)) => Vec::new(),
         };
         let rows = |low: f64, high: f64| cells.map(|cells| cells.rows_between(low, high)).unwrap_or_default();
-        let (first, second): (fn(Place) -> f64, fn(Place) -> f64) =
-            if self.column.along == Along::V { (|p| p.0, |p| p.1) } else { (|p| p.1, |p| p.0) };
+        let (u, v): (Pick, Pick) = (|place| place.0, |place| place.1);
+        let (first, second) = if self.column.along == Along::V { (u, v) } else { (v, u) };
         let stops = match path {
             Path::Edge(edge) => edge.breaks(foot, &[(first, &strips), (second, &rows)]),
             Path::Straight(a, b) => {

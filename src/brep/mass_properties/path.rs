@@ -9,8 +9,11 @@ use crate::math::Point3;
 /// A place in the parameter plane.
 pub(super) type Place = (f64, f64);
 
+/// One of the two parameters of a place.
+pub(super) type Pick = fn(Place) -> f64;
+
 /// A parameter of the surface, and the values of it that matter between two.
-pub(super) type LinesOf<'a> = (fn(Place) -> f64, &'a dyn Fn(f64, f64) -> Vec<f64>);
+pub(super) type LinesOf<'a> = (Pick, &'a dyn Fn(f64, f64) -> Vec<f64>);
 
 /// One piece of the boundary.
 pub(super) enum Path<'a> {

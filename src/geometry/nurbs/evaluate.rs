@@ -90,6 +90,12 @@ fn divide<const H: usize>(mut a: [[f64; H]; 3]) -> [[f64; H]; 3] {
 }
 
 impl NurbsCurve3 {
+    /// Homogeneous point `(w x, w y, w z, w)` at `t`.
+    #[must_use]
+    pub fn homogeneous_point(&self, t: f64) -> [f64; 4] {
+        self.homogeneous(&self.knots().basis_derivatives(t, 0), 0)[0]
+    }
+
     /// Point at `t`.
     #[must_use]
     pub fn point_at(&self, t: f64) -> Point3<f64> {

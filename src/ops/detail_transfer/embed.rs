@@ -72,9 +72,7 @@ pub(super) fn sum(target: &Spline, detail: &Spline) -> Result<Spline, TransferEr
 /// The union with the greater multiplicity of each knot, and the second knots moved onto those of the first that
 /// they nearly meet.
 fn union(a: &KnotVector, b: &KnotVector) -> Option<(KnotVector, KnotVector)> {
-    let (start, end) = a.domain();
-    let near = MERGED * (end - start);
-    let snapped: Vec<f64> = b.knots().iter().map(|&k| nearest(a.knots(), k, near)).collect();
+    let snapped = snapped(a, b);
     let mut all: Vec<f64> = a.knots().to_vec();
     let mut more: Vec<f64> = Vec::new();
     for same in snapped.chunk_by(|x, y| x == y) {
@@ -85,6 +83,13 @@ fn union(a: &KnotVector, b: &KnotVector) -> Option<(KnotVector, KnotVector)> {
     all.sort_by(f64::total_cmp);
     let degree = a.degree();
     Some((KnotVector::new(degree, all).ok()?, KnotVector::new(degree, snapped).ok()?))
+}
+
+/// The second knots, moved onto those of the first that they nearly meet.
+pub(super) fn snapped(a: &KnotVector, b: &KnotVector) -> Vec<f64> {
+    let (start, end) = a.domain();
+    let near = MERGED * (end - start);
+    b.knots().iter().map(|&k| nearest(a.knots(), k, near)).collect()
 }
 
 fn nearest(knots: &[f64], k: f64, near: f64) -> f64 {

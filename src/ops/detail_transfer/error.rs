@@ -78,6 +78,14 @@ pub enum TransferError {
     /// A number is not finite.
     #[error("the result is not finite; gain or scale are too great")]
     NotFinite,
+    /// Detail cannot be laid over a face.
+    #[error("face {face}: {reason}")]
+    Face {
+        /// Name of the face: `#12`.
+        face: String,
+        /// Lower-case fragment.
+        reason: String,
+    },
     /// The curve is an edge of faces.
     #[error(
         "{curve} is an edge of {faces}; moved alone it would leave its faces, and only free curves are changed"
@@ -113,6 +121,7 @@ impl TransferError {
             Self::OpensSeam => "detail.opens-seam",
             Self::DegenerateBase { .. } => "detail.degenerate-base",
             Self::NotFinite => "detail.not-finite",
+            Self::Face { .. } => "detail.unusable-face",
             Self::EdgeOfFaces { .. } => "detail.edge-of-faces",
             Self::Wavelets { .. } => "detail.no-wavelets",
         }

@@ -6,12 +6,13 @@
 //!
 //! [`transfer`] takes and gives splines; [`plan()`] curves of a model, and gives a change set. Neither knows files.
 //!
-//! What it does not do: curves that are edges of faces, curves in the plane, periodic decompositions.
+//! What it does not do: curves that are edges of faces, unless with the face; curves in the plane; periodic decompositions.
 //!
 //! Source: transfer of multiresolution curve details with the corrections of `docs/decisions/detail-transfer.md`.
 
 mod embed;
 pub mod error;
+pub mod face;
 mod frames;
 mod measure;
 pub mod plan;
@@ -19,9 +20,11 @@ pub mod prepare;
 pub mod settings;
 pub mod spline;
 mod transfer;
+mod weighted;
 
 pub use error::TransferError;
-pub use plan::{Params, Plan, plan};
+pub use face::{Direction, FaceTarget};
+pub use plan::{Params, Plan, Target, plan};
 pub use prepare::{Prepared, prepare};
 pub use settings::{Existing, Frame, LevelChoice, Scale, Settings};
 pub use spline::Spline;

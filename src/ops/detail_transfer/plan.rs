@@ -3,11 +3,13 @@
 use serde::Serialize;
 
 use super::error::TransferError;
+use super::face::{self, FaceTarget};
 use super::measure::extent;
 use super::prepare::{Prepared, prepare};
 use super::settings::Settings;
 use super::spline::Spline;
 use super::transfer::transfer;
+use super::weighted;
 use crate::brep::CurveId;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::geometry::{Carried, Curve};
@@ -24,8 +26,8 @@ pub struct Params<'a> {
     pub source: CurveId,
     /// Length of the source's unit in the target's.
     pub source_unit: f64,
-    /// The curve that is changed.
-    pub target: CurveId,
+    /// What is changed.
+    pub target: Target,
     /// Part of the target by its length: from 0 to 1.
     pub part: Option<[f64; 2]>,
     /// Greatest distance of an approximation from its curve; left out: [`TOLERANCE`] of its size.
@@ -37,11 +39,20 @@ pub struct Params<'a> {
     pub settings: Settings,
 }
 
+/// What gets detail.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Target {
+    /// A free curve.
+    Curve(CurveId),
+    /// A face, along a direction.
+    Face(FaceTarget),
+}
+
 /// Tolerance of approximations relative to the size of the curve.
 pub const TOLERANCE: f64 = 1e-6;
 
 /// Derivatives that stay where new detail meets what is left: curvature is continuous.
-const SMOOTH: usize = 3;
+pub(super) const SMOOTH: usize = 3;
 
 /// What is to be done, and what is known about it beforehand.
 #[derive(Debug, Clone)]
@@ -57,7 +68,7 @@ pub struct Plan {
 /// Figures of a transfer. Lengths are in units of the target's file.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Measures {
-    /// Record of the target.
+    /// Record of the target: a curve or a face.
     pub target: String,
     /// Levels that the source has.
     pub levels_available: usize,
@@ -75,11 +86,11 @@ pub struct Measures {
     pub detail_times_curvature: f64,
     /// How far the ends moved.
     pub end_shift: [f64; 2],
-    /// Length of the target before and after.
+    /// Length of the target, of a face its middle line, before and after.
     pub length: [f64; 2],
     /// Degree of the target before and after.
     pub degree: [usize; 2],
-    /// Control points of the target before and after.
+    /// Control points of the target, of a face its whole net, before and after.
     pub control_points: [usize; 2],
     /// Greatest distance between the source and the spline that stands for it; 0 is exact.
     pub source_deviation: f64,
@@ -90,30 +101,64 @@ pub struct Measures {
 /// Plans a transfer.
 ///
 /// # Errors
-/// [`OperationError::Transfer`].
+/// [`OperationError::Transfer`]; for faces [`OperationError::NoParameterLoops`] too.
 pub fn plan(model: &Model, params: &Params<'_>) -> Result<Plan, OperationError> {
-    refuse_edges(model, params.target)?;
-    let name = |model: &Model, curve| model.origins.curves[curve].to_string();
-    let (target_name, source_name) = (name(model, params.target), name(params.source_model, params.source));
-    let target = prepared(read(model, params.target, &target_name)?, &target_name, params.tolerance)?;
-    let scaled;
-    let curve = read(params.source_model, params.source, &source_name)?;
-    let curve = if params.source_unit.to_bits() == 1.0f64.to_bits() {
-        curve
-    } else {
-        scaled = curve.transformed(&Affine::scale(params.source_unit)).map_err(|_| TransferError::Curve {
-            curve: source_name.clone(),
-            reason: "it cannot be brought to the units of the target".to_owned(),
-        })?;
-        &scaled
+    let source_name = name(params.source_model, params.source);
+    if let Target::Curve(curve) = params.target {
+        refuse_edges(model, curve)?;
+    }
+    let source = prepared_source(params, &source_name)?;
+    match &params.target {
+        Target::Curve(curve) => Ok(on_curve(model, params, *curve, &source, &source_name)?),
+        Target::Face(target) => face::plan(model, params, target, &source, &source_name),
+    }
+}
+
+fn name(model: &Model, curve: CurveId) -> String {
+    model.origins.curves[curve].to_string()
+}
+
+/// The source in the units of the target.
+fn prepared_source(params: &Params<'_>, name: &str) -> Result<Prepared, TransferError> {
+    let curve = read(params.source_model, params.source, name)?;
+    if params.source_unit.to_bits() == 1.0f64.to_bits() {
+        return prepared(curve, name, params.tolerance);
+    }
+    let scaled = curve.transformed(&Affine::scale(params.source_unit)).map_err(|_| TransferError::Curve {
+        curve: name.to_owned(),
+        reason: "it cannot be brought to the units of the target".to_owned(),
+    })?;
+    prepared(&scaled, name, params.tolerance)
+}
+
+fn on_curve(
+    model: &Model,
+    params: &Params<'_>,
+    curve: CurveId,
+    source: &Prepared,
+    source_name: &str,
+) -> Result<Plan, TransferError> {
+    let target_name = name(model, curve);
+    let target = read(model, curve, &target_name)?;
+    // Frames and lengths are taken from a spline without weights, which runs as the exact form does.
+    let rational = weighted::rational_form(target);
+    let target = match &rational {
+        Some(exact) => prepared(&Curve::Nurbs(exact.clone()), &target_name, params.tolerance)?,
+        None => prepared(target, &target_name, params.tolerance)?,
     };
-    let source = prepared(curve, &source_name, params.tolerance)?;
     let settings = completed(params, &source.spline, &target.spline)?;
-    let named = |error| in_file(error, &source_name, &target_name);
+    let named = |error| in_file(error, source_name, &target_name);
     let made = transfer(&target.spline, &source.spline, &settings).map_err(named)?;
+    let exact = match &rational {
+        Some(exact) => weighted::sum(exact, &made.detail)?,
+        None => None,
+    };
+    let is_exact = exact.is_some();
+    let new = exact.or_else(|| made.curve.to_nurbs()).ok_or(TransferError::NotFinite)?;
     let extent = extent(&made);
     let (start, end) = target.spline.domain();
     let interval = settings.interval.unwrap_or((start, end));
+    let before = rational.as_ref().map_or(&target.spline.knots, |exact| exact.knots());
     let measures = Measures {
         levels_available: made.levels_available,
         levels: made.levels.clone(),
@@ -124,18 +169,17 @@ pub fn plan(model: &Model, params: &Params<'_>) -> Result<Plan, OperationError> 
         detail_times_curvature: extent.fold,
         end_shift: extent.ends,
         length: [&target.spline, &made.curve].map(|curve| curve.length(start, end)),
-        degree: [&target.spline, &made.curve].map(|curve| curve.knots.degree()),
-        control_points: [&target.spline, &made.curve].map(|curve| curve.points.len()),
+        degree: [before.degree(), new.knots().degree()],
+        control_points: [before.n_basis(), new.points().len()],
         source_deviation: source.deviation,
-        target_deviation: target.deviation,
+        target_deviation: if is_exact { 0.0 } else { target.deviation },
         target: target_name.clone(),
     };
     let notes = notes(&measures, &target_name);
     let mut change_set = ChangeSet::default();
     let still = made.detail.points.iter().flatten().all(|c| *c == 0.0);
     if !still {
-        let new = made.curve.to_nurbs().ok_or(TransferError::NotFinite)?;
-        change_set.free_curves.insert(params.target, Curve::Nurbs(new));
+        change_set.free_curves.insert(curve, Curve::Nurbs(new));
     }
     Ok(Plan { change_set, measures, notes })
 }
@@ -177,7 +221,11 @@ fn prepared(curve: &Curve, name: &str, tolerance: Option<f64>) -> Result<Prepare
 }
 
 /// The settings with the interval and the order at the ends.
-fn completed(params: &Params<'_>, source: &Spline, target: &Spline) -> Result<Settings, TransferError> {
+pub(super) fn completed(
+    params: &Params<'_>,
+    source: &Spline,
+    target: &Spline,
+) -> Result<Settings, TransferError> {
     let interval = match params.part {
         None => None,
         Some([from, to]) if (0.0..to).contains(&from) && to <= 1.0 => {
@@ -191,7 +239,7 @@ fn completed(params: &Params<'_>, source: &Spline, target: &Spline) -> Result<Se
 }
 
 /// The records instead of `source` and `target`.
-fn in_file(error: TransferError, source: &str, target: &str) -> TransferError {
+pub(super) fn in_file(error: TransferError, source: &str, target: &str) -> TransferError {
     let named = |name: String| match name.as_str() {
         "source" => source.to_owned(),
         "target" => target.to_owned(),
@@ -206,7 +254,7 @@ fn in_file(error: TransferError, source: &str, target: &str) -> TransferError {
     }
 }
 
-fn notes(measures: &Measures, target: &str) -> Vec<Diagnostic> {
+pub(super) fn notes(measures: &Measures, target: &str) -> Vec<Diagnostic> {
     let note = |code, severity, message| Diagnostic {
         code,
         severity,
@@ -221,7 +269,7 @@ fn notes(measures: &Measures, target: &str) -> Vec<Diagnostic> {
     }
     if measures.target_deviation > 0.0 {
         let message = format!(
-            "the curve has no exact form without weights; a cubic stands for it, at most {:.3e} away",
+            "the curve has no exact form; a cubic stands for it, at most {:.3e} away",
             measures.target_deviation
         );
         notes.push(note("detail.approximated", Severity::Note, message));

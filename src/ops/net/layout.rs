@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
+use super::cells::{CellGrid, Mask};
 use super::polygon::Contour;
 use super::sampling::mean_lengths;
 use crate::brep::parameter_loop::{LoopSampling, parameter_loops};
@@ -43,6 +44,31 @@ impl Layout {
         let closed = self.loops.get(at).and_then(Option::as_ref).is_some_and(|l| l.closed);
         closed && self.outer != Some(at)
     }
+
+    /// For each loop the control points of a surface, over the face's parameters, that act on it. Pieces on the border
+    /// of the domain do not count: there only the outermost rows act.
+    #[must_use]
+    pub fn acting_on_bounds(&self, surface: &NurbsSurface) -> Vec<Mask> {
+        let grid = CellGrid::new(surface.knots_u(), surface.knots_v());
+        let border = [surface.knots_u().domain(), surface.knots_v().domain()];
+        let one = |shape: &LoopShape| {
+            let Contour { points, margin } = &shape.contour;
+            let sides = points.iter().copied().zip(points.iter().copied().cycle().skip(1));
+            let inner = sides.filter(|(a, b)| !on_border(*a, *b, border, *margin));
+            grid.control_points(&grid.met_by_sides(inner, *margin))
+        };
+        self.loops.iter().flatten().map(one).collect()
+    }
+}
+
+/// Part of the domain within which a side lies on its border.
+const ON_BORDER: f64 = 1e-7;
+
+fn on_border(a: [f64; 2], b: [f64; 2], border: [(f64, f64); 2], margin: [f64; 2]) -> bool {
+    (0..2).any(|k| {
+        let slack = (ON_BORDER * (border[k].1 - border[k].0)).max(margin[k]);
+        [border[k].0, border[k].1].iter().any(|x| (a[k] - x).abs() <= slack && (b[k] - x).abs() <= slack)
+    })
 }
 
 /// The B-spline surface of a face, if it has one.
