@@ -3,7 +3,7 @@
 
 use proptest::prelude::*;
 use resurf::geometry::nurbs::{KnotVector, NurbsSurface};
-use resurf::geometry::{Curve, Surface, Trimmed};
+use resurf::geometry::{Curve, ParameterLine, Surface, Trimmed};
 use resurf::math::{Frame, Point3, Vector3};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -41,6 +41,32 @@ fn corners_off(surface: &Surface, nurbs: &NurbsSurface) -> f64 {
 }
 
 proptest! {
+    #[test]
+    fn parameters_are_carried_to_the_same_point(frame in frames(), range in angles(), share in 0.0..1.0f64) {
+        let v = (-1.2, 1.1);
+        let profile = Curve::Hyperbola { frame, semi_axis: 2.0, semi_imaginary_axis: 1.5 };
+        let arc = Curve::Ellipse { frame, semi_axis_1: 3.0, semi_axis_2: 2.0 };
+        let turned = Trimmed { basis: Box::new(arc), start: -range.1, end: -range.0, forward: false };
+        let surfaces = [
+            Surface::Cylinder { frame, radius: 3.0 },
+            Surface::Cone { frame, radius: 5.0, semi_angle: 0.4 },
+            Surface::Sphere { frame, radius: 4.0 },
+            Surface::Torus { frame, major_radius: 7.0, minor_radius: 2.0 },
+            Surface::Revolution { curve: Box::new(profile), frame },
+            Surface::LinearExtrusion { curve: Box::new(Curve::Trimmed(turned)), direction: frame.z },
+        ];
+        for surface in surfaces {
+            let nurbs = surface.to_nurbs(range, v).expect("good ranges");
+            let [along_u, along_v] = ParameterLine::of_surface(&surface, range, v).expect("exact");
+            let (x, y) = (range.0 + share * (range.1 - range.0), v.0 + share * share * (v.1 - v.0));
+            let ((u, slope), (w, _)) = (along_u.image(x), along_v.image(y));
+            prop_assert!((nurbs.point(u, w) - surface.point(x, y)).norm() < 1e-11, "{}", surface.kind());
+            let step = 1e-6;
+            let difference = (along_u.image(x + step).0 - along_u.image(x - step).0) / (2.0 * step);
+            prop_assert!((difference - slope).abs() < 1e-6, "{}", surface.kind());
+        }
+    }
+
     #[test]
     fn arcs_lie_on_their_ellipse(frame in frames(), a in 0.1..9.0f64, b in 0.1..9.0f64, range in angles()) {
         let curve = Curve::Ellipse { frame, semi_axis_1: a, semi_axis_2: b };

@@ -163,10 +163,11 @@ fn schemas_are_up_to_date() {
     let schemas = [
         ("schemas/job.v1.schema.json", resurf::job::schema::job()),
         ("schemas/report.v1.schema.json", resurf::job::schema::report()),
+        ("schemas/feature.v1.schema.json", resurf::job::schema::feature()),
     ];
     for (path, generated) in schemas {
         let committed = fs::read_to_string(root().join(path)).unwrap_or_default();
-        let word = if path.contains("job") { "job" } else { "report" };
+        let word = path.trim_start_matches("schemas/").split('.').next().unwrap_or_default();
         assert!(committed == generated, "{path} is stale: `cargo run -- schema {word} > {path}`");
     }
 }

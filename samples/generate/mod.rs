@@ -1,5 +1,5 @@
 //! Sample parts from formulas: car panels with elliptic holes, one of them once more as a thin solid, an
-//! assembly of two; sheets with features, and a plate, a vase and a shell to take them; wires with and without
+//! assembly of two; sheets with features, and a plate, a vase, a wheel and a shell to take them; wires with and without
 //! detail.
 //!
 //! Nothing here uses the library: a sample that the library helped to write could not tell on it. Every
@@ -15,6 +15,7 @@ mod sheet;
 mod spline;
 mod thin_solid;
 mod vase;
+mod wheel;
 mod wires;
 
 use panel::Panel;
@@ -51,5 +52,8 @@ pub fn all() -> Vec<Sample> {
         sample("trunk/trunk.step", sheet::write(&Panel::trunk(), Schema::Ap214)),
         sample("vamp/vamp.step", thin_solid::write("vamp", &Panel::vamp(), Schema::Ap242)),
         sample("vase/vase.step", vase::write(Schema::Ap214)),
+        sample("wheel/cone.step", wheel::write("cone", wheel::Tread::Cone, Schema::Ap214)),
+        sample("wheel/cylinder.step", wheel::write("cylinder", wheel::Tread::Cylinder, Schema::Ap242)),
+        sample("wheel/wheel.step", wheel::write("wheel", wheel::Tread::Profile, Schema::Ap214)),
     ]
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::job::file::ValidatorName;
+use crate::job::paste_file::RegionSetting;
 use crate::job::selector::Selector;
 
 /// Freeform operations on exchanged CAD parts, with everything else kept byte for byte.
@@ -33,7 +34,10 @@ pub enum Command {
     Check(CheckArguments),
     /// Write one self-contained HTML page that shows a part
     View(ViewArguments),
-    /// Print the JSON Schema of the job file or of the report
+    /// Keep features for pastes without their parts
+    #[command(subcommand)]
+    Feature(FeatureCommand),
+    /// Print the JSON Schema of the job file, of the report or of a feature
     Schema {
         /// Which one
         of: SchemaOf,
@@ -124,6 +128,30 @@ pub struct ViewArguments {
     pub tolerance: Option<crate::units::Length>,
 }
 
+/// The commands of `feature`.
+#[derive(Debug, Subcommand)]
+pub enum FeatureCommand {
+    /// Take a feature off a face, and write it to a file of its own
+    Export(ExportArguments),
+}
+
+/// Arguments of `feature export`.
+#[derive(Debug, Args)]
+pub struct ExportArguments {
+    /// Part to read
+    #[arg(value_name = "PART")]
+    pub part: PathBuf,
+    /// The face: `#1042`, or a table as in a job file; left out, the only one
+    #[arg(long, value_name = "SELECTOR")]
+    pub face: Option<Selector>,
+    /// What holds the feature: a table as `source.region` of a job; left out, the outer loop
+    #[arg(long, value_name = "REGION")]
+    pub region: Option<RegionSetting>,
+    /// File to write
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+}
+
 /// Arguments of `check`.
 #[derive(Debug, Args)]
 pub struct CheckArguments {
@@ -145,4 +173,6 @@ pub enum SchemaOf {
     Job,
     /// The report
     Report,
+    /// A feature of a library
+    Feature,
 }

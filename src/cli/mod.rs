@@ -7,6 +7,7 @@ mod arguments;
 mod check;
 mod convert;
 pub mod exit_code;
+mod feature;
 mod inspect;
 mod print;
 mod run;
@@ -15,7 +16,7 @@ mod view;
 
 use clap::Parser;
 
-use arguments::{Arguments, Command, SchemaOf};
+use arguments::{Arguments, Command, FeatureCommand, SchemaOf};
 use print::Printer;
 
 /// Runs the program with the process's arguments and gives its exit code.
@@ -37,10 +38,12 @@ pub fn main() -> u8 {
         Command::Inspect(arguments) => inspect::inspect(&arguments, &mut printer),
         Command::Check(arguments) => check::check(&arguments, &mut printer),
         Command::View(arguments) => view::view(&arguments, &mut printer),
+        Command::Feature(FeatureCommand::Export(arguments)) => feature::export(&arguments, &mut printer),
         Command::Schema { of } => {
             printer.data(&match of {
                 SchemaOf::Job => crate::job::schema::job(),
                 SchemaOf::Report => crate::job::schema::report(),
+                SchemaOf::Feature => crate::job::schema::feature(),
             });
             exit_code::DONE
         }

@@ -21,7 +21,7 @@ pub use curve::Curve;
 pub use curve2d::Curve2d;
 pub use nurbs::SurfaceDerivatives;
 pub use surface::{Patch, PatchGrid, Surface};
-pub use to_nurbs::ToNurbsError;
+pub use to_nurbs::{ParameterLine, ToNurbsError};
 pub use transform::{NotRepresentable, ParameterMap};
 
 /// Geometry that was read, or the entity name of geometry that is only carried.

@@ -8,7 +8,7 @@
 use super::nurbs::{KnotVector, NurbsCurve3, NurbsSurface};
 use super::{Curve, Surface};
 use crate::math::{Frame, Point3, Vector3};
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Why there is no exact B-spline.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -119,6 +119,90 @@ impl Surface {
             Self::Trimmed { basis, forward: [true, true], .. } => basis.to_nurbs(u, v),
             Self::Offset { .. } | Self::Trimmed { .. } | Self::Composite(_) => {
                 Err(ToNurbsError::Kind { kind: self.kind() })
+            }
+        }
+    }
+}
+
+/// How the parameter of an exact B-spline follows from that of the curve or surface it was made of.
+///
+/// Inside a piece of a conic the two differ: for half the opening `h` of the piece and its middle `m` the B-spline
+/// counts `tan((x - m) / 2) / tan(h / 2)` of half a piece.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ParameterLine {
+    /// The same.
+    Same,
+    /// Pieces of a turn between these breaks; beyond them the turn goes on, whole turns being the same.
+    Turn(Vec<f64>),
+    /// One piece of a hyperbola.
+    Hyperbola(f64, f64),
+    /// The negative of another's image of the negative.
+    Reversed(Box<ParameterLine>),
+}
+
+impl ParameterLine {
+    /// For a B-spline of [`Curve::to_nurbs`] over the same range; `None` where there is none.
+    #[must_use]
+    pub fn of_curve(curve: &Curve, range: (f64, f64)) -> Option<Self> {
+        match curve {
+            Curve::Circle { .. } | Curve::Ellipse { .. } => turn_breaks(range).map(Self::Turn),
+            Curve::Hyperbola { .. } => Some(Self::Hyperbola(range.0, range.1)),
+            Curve::Line { .. } | Curve::Parabola { .. } | Curve::Nurbs(_) | Curve::Polyline(_) => {
+                Some(Self::Same)
+            }
+            Curve::Trimmed(piece) if piece.forward => Self::of_curve(&piece.basis, range),
+            Curve::Trimmed(piece) => {
+                let inner = Self::of_curve(&piece.basis, (-range.1, -range.0))?;
+                Some(if inner == Self::Same { inner } else { Self::Reversed(Box::new(inner)) })
+            }
+            Curve::Composite(_) | Curve::Offset { .. } => None,
+        }
+    }
+
+    /// For the B-spline of [`Surface::to_nurbs`] over the same ranges, along `u` and along `v`.
+    #[must_use]
+    pub fn of_surface(surface: &Surface, u: (f64, f64), v: (f64, f64)) -> Option<[Self; 2]> {
+        let turn = |range| turn_breaks(range).map(Self::Turn);
+        Some(match surface {
+            Surface::Plane(_) | Surface::Nurbs(_) => [Self::Same, Self::Same],
+            Surface::Cylinder { .. } | Surface::Cone { .. } => [turn(u)?, Self::Same],
+            Surface::Sphere { .. } | Surface::Torus { .. } => [turn(u)?, turn(v)?],
+            Surface::LinearExtrusion { curve, .. } => [Self::of_curve(curve, u)?, Self::Same],
+            Surface::Revolution { curve, .. } => [turn(u)?, Self::of_curve(curve, v)?],
+            Surface::CurveBounded { basis } | Surface::Trimmed { basis, forward: [true, true], .. } => {
+                return Self::of_surface(basis, u, v);
+            }
+            Surface::Trimmed { .. } | Surface::Offset { .. } | Surface::Composite(_) => return None,
+        })
+    }
+
+    /// The B-spline's parameter, and its derivative by the other.
+    #[must_use]
+    pub fn image(&self, x: f64) -> (f64, f64) {
+        match self {
+            Self::Same => (x, 1.0),
+            Self::Turn(breaks) => {
+                let (first, last) = (breaks[0], breaks[breaks.len() - 1]);
+                // Both ends of a full turn are themselves, not each other.
+                let within = x >= first - PIECE_SLACK && x <= last + PIECE_SLACK;
+                let turns = if within { 0.0 } else { ((x - 0.5 * (first + last)) / TAU).round() };
+                let shift = TAU * turns;
+                let inside = x - shift;
+                let at = breaks.partition_point(|b| *b <= inside).clamp(1, breaks.len() - 1);
+                let (m, h) = (0.5 * (breaks[at - 1] + breaks[at]), 0.5 * (breaks[at] - breaks[at - 1]));
+                let (half, scale) = (0.5 * (inside - m), h / (0.5 * h).tan());
+                let ends = [breaks[at - 1], breaks[at]];
+                let image = ends.into_iter().find(|b| *b == inside).unwrap_or(m + scale * half.tan());
+                (shift + image, 0.5 * scale / half.cos().powi(2))
+            }
+            Self::Hyperbola(start, end) => {
+                let (m, h) = (0.5 * (start + end), 0.5 * (end - start));
+                let (half, scale) = (0.5 * (x - m), h / (0.5 * h).tanh());
+                (m + scale * half.tanh(), 0.5 * scale / half.cosh().powi(2))
+            }
+            Self::Reversed(inner) => {
+                let (y, slope) = inner.image(-x);
+                (-y, slope)
             }
         }
     }

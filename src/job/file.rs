@@ -10,6 +10,7 @@ use serde::de;
 pub use super::detail_file::DetailTransfer;
 pub use super::paste_file::FeaturePaste;
 use super::selector::Selector;
+pub use super::simplify_file::Simplify;
 use crate::units::Length;
 
 /// A job: parts, an operation or several, and where the results go.
@@ -207,6 +208,8 @@ pub enum Operation {
     DetailTransfer(Box<DetailTransfer>),
     /// Carry a freeform feature from one face onto another.
     FeaturePaste(Box<FeaturePaste>),
+    /// Remove knots of a face that it can do without.
+    Simplify(Simplify),
 }
 
 impl Operation {
@@ -215,7 +218,7 @@ impl Operation {
     pub fn growth(&self) -> f64 {
         match self {
             Self::ConstrainedScale(scale) => scale.factors.0.into_iter().fold(1.0, f64::max),
-            Self::FeaturePaste(_) | Self::DetailTransfer(_) => 1.0,
+            Self::FeaturePaste(_) | Self::DetailTransfer(_) | Self::Simplify(_) => 1.0,
         }
     }
 }
@@ -226,6 +229,7 @@ enum OperationKind {
     ConstrainedScale,
     DetailTransfer,
     FeaturePaste,
+    Simplify,
 }
 
 impl<'de> Deserialize<'de> for Operation {
@@ -259,6 +263,9 @@ impl<'de> Deserialize<'de> for Operation {
                         let paste = FeaturePaste::deserialize(rest)?;
                         paste.check().map_err(de::Error::custom)?;
                         Ok(Operation::FeaturePaste(Box::new(paste)))
+                    }
+                    OperationKind::Simplify => {
+                        Simplify::deserialize(rest)?.operation().map_err(de::Error::custom)
                     }
                 }
             }

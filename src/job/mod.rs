@@ -8,6 +8,7 @@ pub mod contents;
 pub mod detail_file;
 mod detail_operate;
 pub mod failure;
+pub mod feature_file;
 pub mod file;
 mod json;
 pub mod judge;
@@ -28,6 +29,7 @@ pub mod schema;
 pub mod select;
 mod select_curve;
 pub mod selector;
+pub mod simplify_file;
 pub mod stale_property;
 
 pub use file::Job;

@@ -44,6 +44,14 @@ pub enum OperateError {
         /// Why.
         reason: String,
     },
+    /// The file of a library's feature cannot be used.
+    #[error("source.feature: {file}: {reason}")]
+    FeatureFile {
+        /// The file.
+        file: String,
+        /// Why.
+        reason: String,
+    },
     /// No curve has the name.
     #[error("source.region.curve: #{name} is no curve that was read")]
     NoCurve {
@@ -77,6 +85,7 @@ impl OperateError {
             | Self::TargetCurve(_)
             | Self::SourceCurve(_) => "select.no-match",
             Self::SourceFile { .. } => "job.source-file",
+            Self::FeatureFile { .. } => "job.feature-file",
             Self::NoCurve { .. } => "paste.no-curve",
             Self::Hold(_) => "select.no-hold",
             Self::Operation(error) => error.code(),
@@ -102,6 +111,10 @@ pub fn operate(model: &Model, source: &Source, operation: &Operation) -> Result<
         Operation::FeaturePaste(words) => {
             let planned = super::paste_operate::planned(model, words)?;
             Ok(reported("feature_paste", planned.change_set, &planned.measures, &planned.notes, source))
+        }
+        Operation::Simplify(words) => {
+            let planned = words.planned(model)?;
+            Ok(reported("simplify", planned.change_set, &planned.measures, &[], source))
         }
     }
 }
@@ -146,6 +159,7 @@ fn changed(changes: &ChangeSet) -> std::collections::BTreeMap<String, usize> {
         ("pcurves", changes.pcurves.len()),
         ("points", changes.points.len()),
         ("free_curves", changes.free_curves.len()),
+        ("bounds", changes.bounds.values().map(Vec::len).sum()),
     ];
     counts.into_iter().map(|(name, count)| (name.to_owned(), count)).collect()
 }

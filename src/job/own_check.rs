@@ -113,6 +113,7 @@ pub fn touched(model: &Model, changes: &ChangeSet) -> BTreeSet<Origin> {
         }
     }
     let mut faces: BTreeSet<FaceId> = changes.surfaces.keys().copied().collect();
+    faces.extend(changes.bounds.keys().copied());
     faces.extend(changes.curves.keys().flat_map(|&edge| &faces_of_edges[edge]));
     faces.extend(changes.pcurves.keys().map(|&coedge| brep.loops[brep.coedges[coedge].in_loop].face));
     faces.extend(changes.points.keys().flat_map(|&vertex| &uses[vertex]));

@@ -46,6 +46,9 @@ pub struct FeaturePaste {
     /// What to do when the feature meets a loop of the target.
     #[serde(default)]
     pub loops: LoopsWord,
+    /// What to do with loops of the source inside the region.
+    #[serde(default)]
+    pub holes: HolesWord,
     /// Greatest deviation of a fit. Left out: a fifty-thousandth of the feature's size.
     #[serde(default)]
     pub tolerance: Option<LengthSetting>,
@@ -58,6 +61,10 @@ pub struct PasteSource {
     /// File of the source face, relative to the job file. Left out: the part itself.
     #[serde(default)]
     pub file: Option<String>,
+    /// Feature of a library, relative to the job file: written by `resurf feature export`, it needs no part. No
+    /// other key goes with it.
+    #[serde(default)]
+    pub feature: Option<String>,
     /// The source face. Left out: the only one.
     #[serde(default)]
     pub face: Option<Selector>,
@@ -271,6 +278,15 @@ impl TryFrom<RegionKeys> for RegionSetting {
                     .to_owned(),
             ),
         }
+    }
+}
+
+impl std::str::FromStr for RegionSetting {
+    type Err = String;
+
+    /// A region as typed on a command line: a table as in a job file.
+    fn from_str(text: &str) -> Result<Self, String> {
+        super::read::read_value(text).map_err(|e| e.to_string())
     }
 }
 
@@ -488,10 +504,30 @@ pub enum LoopsWord {
     Protect,
 }
 
+/// Loops of the source inside the region.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum HolesWord {
+    /// The surface is pasted across them, and the report says so.
+    #[default]
+    Close,
+    /// The target gets them too, as bounds of its own; a closed shell is refused.
+    Carry,
+}
+
 impl FeaturePaste {
     /// Refuses keys that contradict each other.
     pub(super) fn check(&self) -> Result<(), String> {
-        let target = &self.target;
+        let (source, target) = (&self.source, &self.target);
+        let others = source.file.is_some()
+            || source.face.is_some()
+            || source.at.is_some()
+            || source.region != RegionSetting::Outer;
+        if source.feature.is_some() && others {
+            return Err(
+                "`source.feature` brings its own face and region; no other key goes with it".to_owned()
+            );
+        }
         if target.at.is_none() && target.places.is_empty() {
             return Err("`target` names no place; expected `at` or `places`".to_owned());
         }

@@ -1,20 +1,24 @@
 //! From the words of `feature_paste` to the operation: faces are selected, the source's file is read, lengths get
 //! their units, patterns become places.
 
-use super::file::FeaturePaste;
+use super::feature_file::FeatureFile;
+use super::file::{FeaturePaste, LengthSetting};
 use super::operate::{OperateError, other_file};
 use super::paste_file::{
-    EdgeWeightsWord, ExistingWord, LoopsWord, MirrorWord, PasteMethod, Pattern, PlaneSetting, RegionSetting,
-    RuleWord, TurnWord,
+    EdgeWeightsWord, ExistingWord, HolesWord, LoopsWord, MirrorWord, PasteMethod, Pattern, PlaneSetting,
+    RegionSetting, RuleWord, TurnWord,
 };
 use super::select::{self, point_in};
+use super::selector::Selector;
+use crate::brep::FaceId;
 use crate::brep::edge_samples::{EdgeRange, EdgeSampling, sample_curve};
 use crate::brep::sample_edge;
 use crate::math::{Point3, Vector3};
 use crate::model::{Model, Origin};
 use crate::ops::feature_paste::contour::{Plane, closed_points};
 use crate::ops::feature_paste::plan::{
-    Params, Place, Plan, Region, Source, TargetLoops, circular_pattern, direction_at, linear_pattern, plan,
+    Extracted, FaceSource, Holes, Params, Place, Plan, Region, TargetLoops, circular_pattern, direction_at,
+    extract, linear_pattern, plan,
 };
 use crate::ops::feature_paste::{EdgeWeights, Existing, Method, Mirror, Rule, Settings, Turn};
 use crate::units::LengthUnit;
@@ -22,15 +26,15 @@ use crate::units::LengthUnit;
 /// Plans a paste onto a model.
 pub(super) fn planned(model: &Model, words: &FeaturePaste) -> Result<Plan, OperateError> {
     let target = select::one_face(model, words.target.face.as_ref()).map_err(OperateError::TargetFace)?;
-    let other = words.source.file.as_deref().map(other_file).transpose()?;
-    let from = other.as_ref().unwrap_or(model);
-    let face = select::one_face(from, words.source.face.as_ref()).map_err(OperateError::SourceFace)?;
-    let (unit, source_unit) = (&model.context_of(target).length, &from.context_of(face).length);
-    let source = Source {
-        model: from,
-        face,
-        region: region(from, &words.source.region, source_unit)?,
-        anchor: words.source.at.as_ref().map(|point| point_in(point, source_unit)),
+    let unit = &model.context_of(target).length;
+    let wanted = &words.source;
+    let feature = match &wanted.feature {
+        Some(file) => saved(file)?,
+        None => {
+            let other = wanted.file.as_deref().map(other_file).transpose()?;
+            let from = other.as_ref().unwrap_or(model);
+            extracted(from, wanted.face.as_ref(), &wanted.region, wanted.at.as_ref())?.0
+        }
     };
     let settings = settings(words);
     let places = places(model, words, unit, target)?;
@@ -39,7 +43,35 @@ pub(super) fn planned(model: &Model, words: &FeaturePaste) -> Result<Plan, Opera
         LoopsWord::Protect => TargetLoops::Protect,
     };
     let tolerance = words.tolerance.map(|length| length.0.in_unit(unit));
-    Ok(plan(model, &Params { source, target, places, settings, tolerance, loops })?)
+    let holes = match words.holes {
+        HolesWord::Close => Holes::Close,
+        HolesWord::Carry => Holes::Carry,
+    };
+    Ok(plan(model, &Params { source: &feature, target, places, settings, tolerance, loops, holes })?)
+}
+
+/// Takes a feature off a face, and tells which.
+///
+/// # Errors
+/// [`OperateError`].
+pub(super) fn extracted(
+    model: &Model,
+    face: Option<&Selector>,
+    wanted: &RegionSetting,
+    at: Option<&[LengthSetting; 3]>,
+) -> Result<(Extracted, FaceId), OperateError> {
+    let face = select::one_face(model, face).map_err(OperateError::SourceFace)?;
+    let unit = &model.context_of(face).length;
+    let anchor = at.map(|point| point_in(point, unit));
+    let source = FaceSource { model, face, region: region(model, wanted, unit)?, anchor };
+    Ok((extract(&source)?, face))
+}
+
+/// A feature of a library.
+fn saved(file: &str) -> Result<Extracted, OperateError> {
+    let fault = |reason: String| OperateError::FeatureFile { file: file.to_owned(), reason };
+    let text = std::fs::read_to_string(file).map_err(|error| fault(error.to_string()))?;
+    FeatureFile::read(&text).map_err(fault)
 }
 
 fn settings(words: &FeaturePaste) -> Settings {
@@ -85,7 +117,7 @@ fn places(
     model: &Model,
     words: &FeaturePaste,
     unit: &LengthUnit,
-    target: crate::brep::FaceId,
+    target: FaceId,
 ) -> Result<Vec<Place>, OperateError> {
     let wanted = &words.target;
     let along = wanted.along.map(Vector3::from);

@@ -90,9 +90,12 @@ fn near(nearest: &Option<String>) -> String {
 pub fn resolve(job: &mut Job, folder: &Path) -> Result<(), PlanError> {
     for operation in &mut job.operation {
         let file = match operation {
-            Operation::ConstrainedScale(_) => None,
+            Operation::ConstrainedScale(_) | Operation::Simplify(_) => None,
             Operation::DetailTransfer(transfer) => transfer.source.file.as_mut(),
-            Operation::FeaturePaste(paste) => paste.source.file.as_mut(),
+            Operation::FeaturePaste(paste) => {
+                let source = &mut paste.source;
+                source.file.as_mut().or(source.feature.as_mut())
+            }
         };
         let Some(file) = file else { continue };
         let path = folder.join(&*file);

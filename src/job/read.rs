@@ -68,6 +68,21 @@ pub fn read_selector(text: &str) -> Result<Selector, JobFileError> {
     decode(&entry.value).map_err(placed)
 }
 
+/// Reads one value in TOML's words, such as a region.
+///
+/// # Errors
+/// As [`read`]; places count from the value's start.
+pub fn read_value<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, JobFileError> {
+    let text = format!("{SELECTOR_KEY}{text}");
+    let Value::Table(entries) = toml_node(&text)?.value else {
+        return Err(JobFileError::new(0..0, "expected a value"));
+    };
+    let [entry] = entries.as_slice() else {
+        return Err(JobFileError::new(0..0, "expected one value"));
+    };
+    decode(&entry.value).map_err(placed)
+}
+
 const SELECTOR_KEY: &str = "face=";
 
 fn placed(error: NodeError) -> JobFileError {

@@ -141,7 +141,7 @@ impl From<crate::exchange::EditCounts> for Edits {
 pub struct OperationReport {
     /// The word of the job file.
     pub kind: String,
-    /// Elements that got new geometry: `surfaces`, `curves`, `pcurves`, `points`, `free_curves`.
+    /// Elements that got new geometry: `surfaces`, `curves`, `pcurves`, `points`, `free_curves`, `bounds`.
     pub changed: BTreeMap<String, usize>,
     /// Figures of the operation; each operation has its own.
     pub measures: serde_json::Value,

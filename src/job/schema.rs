@@ -1,5 +1,6 @@
-//! JSON Schema of the job file and of the report, generated from their types.
+//! JSON Schema of the job file, of the report and of a feature, generated from their types.
 
+use super::feature_file::FeatureFile;
 use super::file::Job;
 use super::report::Report;
 
@@ -13,6 +14,12 @@ pub fn job() -> String {
 #[must_use]
 pub fn report() -> String {
     text(&schemars::schema_for!(Report))
+}
+
+/// The schema of a feature of a library, with a line feed behind it.
+#[must_use]
+pub fn feature() -> String {
+    text(&schemars::schema_for!(FeatureFile))
 }
 
 fn text(schema: &schemars::Schema) -> String {

@@ -9,7 +9,27 @@ use crate::brep::{CoedgeId, CurveId, EdgeId, FaceId, VertexId};
 use crate::geometry::{Curve, Curve2d, Surface};
 use crate::math::Point3;
 
-/// New geometry for elements of a model; the topology stays.
+/// An edge of a new bound, from its own start to that of the next one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NewEdge {
+    /// The curve in space; the edge is all of it.
+    pub curve: Curve,
+    /// The curve in the parameters of the face's new surface, over the same parameter.
+    pub pcurve: Curve2d,
+    /// Where it starts.
+    pub start: Point3<f64>,
+}
+
+/// A new closed bound of a face.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NewBound {
+    /// Its edges in order, at least one.
+    pub edges: Vec<NewEdge>,
+    /// Whether the bound runs as its edges do.
+    pub forward: bool,
+}
+
+/// New geometry for elements of a model; their topology stays, but for new bounds.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ChangeSet {
     /// New surface of a face. Orientation flags stay.
@@ -20,6 +40,8 @@ pub struct ChangeSet {
     pub pcurves: BTreeMap<CoedgeId, Curve2d>,
     /// New point of a vertex.
     pub points: BTreeMap<VertexId, Point3<f64>>,
+    /// New bounds of a face, with edges of their own.
+    pub bounds: BTreeMap<FaceId, Vec<NewBound>>,
     /// New geometry of a curve that belongs to no edge.
     pub free_curves: BTreeMap<CurveId, Curve>,
 }
@@ -32,6 +54,7 @@ impl ChangeSet {
             && self.curves.is_empty()
             && self.pcurves.is_empty()
             && self.points.is_empty()
+            && self.bounds.is_empty()
             && self.free_curves.is_empty()
     }
 }

@@ -3,6 +3,7 @@
 use super::constrained_scale::ScaleError;
 use super::detail_transfer::TransferError;
 use super::feature_paste::PasteError;
+use super::simplify::SimplifyError;
 
 /// An element that cannot take part, and why.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -27,6 +28,9 @@ pub enum OperationError {
     /// A feature could not be pasted.
     #[error(transparent)]
     Paste(#[from] PasteError),
+    /// A face could not be simplified.
+    #[error(transparent)]
+    Simplify(#[from] SimplifyError),
     /// Elements in the scope have no image under the motion that they would need.
     #[error("{} cannot follow: {}", count(.obstacles), list(.obstacles))]
     CannotFollow {
@@ -100,6 +104,7 @@ impl OperationError {
             Self::Scale(error) => error.code(),
             Self::Transfer(error) => error.code(),
             Self::Paste(error) => error.code(),
+            Self::Simplify(error) => error.code(),
             Self::CannotFollow { .. } => "scale.cannot-follow",
             Self::NeighboursOutside { .. } => "scale.neighbours-outside",
             Self::NothingToHold { .. } => "scale.nothing-to-hold",

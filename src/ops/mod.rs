@@ -8,5 +8,6 @@ pub mod detail_transfer;
 pub mod error;
 pub mod feature_paste;
 pub mod net;
+pub mod simplify;
 
 pub use error::{Obstacle, OperationError};

@@ -16,12 +16,13 @@ pub(super) struct Raster {
 }
 
 impl Raster {
-    /// Draws all triangles, each sample coloured from the place and normal that it shows.
+    /// Draws all triangles, each sample coloured from the place and normal that it shows, and from the triangle and the
+    /// weights of its corners.
     pub(super) fn draw(
         mesh: &Mesh,
         projected: &[Projected],
         place: &Place,
-        colour: impl Fn(&Point3<f64>, &Vector3<f64>) -> [f64; 3],
+        colour: impl Fn(&Point3<f64>, &Vector3<f64>, (usize, [f64; 3])) -> [f64; 3],
     ) -> Self {
         let (width, height) = (place.width as usize * SAMPLES, place.height as usize * SAMPLES);
         let colours = vec![[1.0; 3]; width * height];
@@ -34,7 +35,7 @@ impl Raster {
                 let mix = |values: [Vector3<f64>; 3]| {
                     values[0] * weights[0] + values[1] * weights[1] + values[2] * weights[2]
                 };
-                colour(&Point3::from(mix([a.coords, b.coords, c.coords])), &mix(normals))
+                colour(&Point3::from(mix([a.coords, b.coords, c.coords])), &mix(normals), (at, weights))
             });
         }
         raster

@@ -1,5 +1,4 @@
 use super::*;
-use crate::math::Point3;
 
 /// The graph of `z = height(x)` over the square [-1, 1]², with its exact normals.
 fn sheet(count: u32, height: impl Fn(f64) -> (f64, f64)) -> Mesh {
@@ -105,4 +104,25 @@ fn the_same_views_give_the_same_bytes() {
     let dome = sheet(16, |x| (-0.2 * x * x, -0.4 * x));
     let draw = || highlight_lines(&[View { mesh: &dome }], &from_above(200, 8.0));
     assert_eq!(draw(), draw());
+}
+
+#[test]
+fn a_field_is_blue_below_zero_red_above_and_grey_between() {
+    let flat = sheet(40, |_| (0.0, 0.0));
+    let values: Vec<f64> = flat.vertices.iter().map(|p| 2.0 * p.x).collect();
+    let picture = field(&[FieldView { mesh: &flat, values: &values, full: 1.0 }], &from_above(300, 10.0))
+        .expect("a picture");
+    let pixmap = pixels(&picture);
+    let row = pixmap.height() / 2;
+    let colour = |x: u32| pixmap.pixel(x, row).map(|p| (p.red(), p.blue())).expect("inside");
+    let (left, middle, right) = (colour(40), colour(150), colour(260));
+    assert!(left.1 > left.0 + 60 && right.0 > right.1 + 60, "{left:?} {right:?}");
+    assert!(middle.0.abs_diff(middle.1) < 12, "{middle:?}");
+}
+
+#[test]
+fn a_field_wants_a_value_for_each_vertex() {
+    let flat = sheet(2, |_| (0.0, 0.0));
+    let few = field(&[FieldView { mesh: &flat, values: &[0.0], full: 1.0 }], &from_above(300, 10.0));
+    assert_eq!(few, Err(PictureError::UnsoundMesh { view: 0 }));
 }

@@ -237,3 +237,37 @@ fn the_rim_of_the_sample_is_accepted() {
     let verdict = &report["parts"][0]["validators"][0];
     assert_eq!((&verdict["accepted"], &verdict["figures"]["faces"]), (&json!(true), &json!(1)));
 }
+
+#[test]
+fn faces_of_real_solids_get_detail() {
+    let Some(corpus) = super::support::corpus() else { return };
+    let parts = [
+        ("issue153.stp", "#540", "u"),
+        ("s1-c5-214/MAINBODY_BACK.stp", "#783", "v"),
+        ("Amazing Hand Parts - R-Top_Shell.step", "#1609", "u"),
+        ("s1-c5-214/MAINBODY_FRONT.stp", "#757", "v"),
+    ];
+    for (part, face, direction) in parts {
+        let input = std::fs::read(corpus.join("step").join(part)).expect("a file of the corpus");
+        let words = format!(
+            "{SOURCE}target = {{ face = \"{face}\", direction = \"{direction}\" }}\ngain = 0.2\n\
+             [validate]\nwith = [\"freecad\"]\nrequire = true\n"
+        );
+        let fixture = Fixture::new().sample("curves/sources.step").file("in.stp", input);
+        let fixture = fixture.file("job.toml", job("in.stp", &words));
+        let said = fixture.run(&["run", "job.toml", "--report", "report.json"]);
+        if said.starts_with("exit code: 5") && std::env::var_os("RESURF_REQUIRE_VALIDATORS").is_none() {
+            return;
+        }
+        assert!(said.starts_with("exit code: 0"), "{part}: {said}");
+        let report = std::fs::read_to_string(fixture.path("report.json")).expect("a report");
+        let report: serde_json::Value = serde_json::from_str(&report).expect("JSON");
+        let part = &report["parts"][0];
+        assert_eq!(part["operations"][0]["changed"]["surfaces"], 1, "{part}");
+        let verdict = &part["validators"][0]["figures"];
+        assert_eq!(
+            (&verdict["faces"], &verdict["solids"]),
+            (&part["before"]["counts"]["faces"], &part["before"]["counts"]["solids"],)
+        );
+    }
+}

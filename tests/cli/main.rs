@@ -6,6 +6,8 @@ mod jobs;
 mod locality;
 mod parts;
 mod paste;
+mod paste_corpus;
+mod paste_targets;
 mod patho;
 #[path = "../support/mod.rs"]
 #[allow(dead_code, reason = "shared with other test binaries")]

@@ -12,14 +12,14 @@ use resurf::model::Model;
 
 use crate::Fixture;
 
-fn model(fixture: &Fixture, name: &str) -> Model {
+pub fn model(fixture: &Fixture, name: &str) -> Model {
     let bytes = std::fs::read(fixture.path(name)).expect("a file");
     let mut diagnostics = Diagnostics::default();
     let document = Document::open(bytes, "step", &mut diagnostics).expect("a STEP file");
     document.model(&mut diagnostics)
 }
 
-fn job(part: &str, validators: &str, operations: &[&str]) -> String {
+pub fn job(part: &str, validators: &str, operations: &[&str]) -> String {
     let operations: Vec<String> =
         operations.iter().map(|o| format!("[[operation]]\nkind = \"feature_paste\"\n{o}\n")).collect();
     format!(
@@ -29,7 +29,7 @@ fn job(part: &str, validators: &str, operations: &[&str]) -> String {
     )
 }
 
-fn spline(model: &Model, face: FaceId) -> Option<&NurbsSurface> {
+pub fn spline(model: &Model, face: FaceId) -> Option<&NurbsSurface> {
     match model.brep.surface_of(face).read() {
         Some(Surface::Nurbs(surface)) => Some(surface),
         _ => None,
@@ -89,7 +89,7 @@ fn accepted(fixture: &Fixture, part: &str, target: &str, height: f64) {
     }
 }
 
-fn with_features(part: &str) -> Fixture {
+pub fn with_features(part: &str) -> Fixture {
     Fixture::new()
         .sample(part)
         .sample("features/bump.step")
@@ -217,6 +217,14 @@ fn every_bad_input_has_its_own_error() {
         ),
         (region("polygon = [[0.2, 0.2], [0.8, 0.2], [0.8, 1.8]]"), "4 paste.contour-outside-source"),
         (region("contour = [[0, 0, 0], [90, 0, 0], [90, 90, 0]]"), "4 paste.contour-projection-failed"),
+        (
+            region("contour = [[-90, -90, 0], [90, -90, 0], [90, 90, 0], [-90, 90, 0]]"),
+            "4 paste.contour-projection-failed",
+        ),
+        (
+            format!("{source}\ntarget = {{ face = {{ name = \"TOP\" }}, at = [-30, 80, 12] }}"),
+            "4 paste.place-off-face",
+        ),
         (region("loop = 3"), "4 paste.no-such-loop"),
         (region("curve = \"#1\""), "4 paste.no-curve"),
         (

@@ -28,6 +28,17 @@ fn bad_contours_are_told_apart() {
 }
 
 #[test]
+fn a_weight_of_zero_or_below_makes_no_surface() {
+    use resurf::geometry::nurbs::{KnotVector, NurbsSurface};
+    let knots = || KnotVector::clamped_uniform(1, 1, 0.0, 1.0).unwrap();
+    let net = |w: f64| vec![[0.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [1.0, 0.0, 0.0, 1.0], [w, w, 0.0, w]];
+    assert!(NurbsSurface::new(knots(), knots(), net(1.0)).is_ok());
+    for weight in [0.0, -1.0, f64::NAN] {
+        assert!(NurbsSurface::new(knots(), knots(), net(weight)).is_err(), "{weight}");
+    }
+}
+
+#[test]
 fn a_feature_greater_than_the_target_is_refused_with_the_reach() {
     let settings = Settings { scale: [5.0; 3], ..Settings::new(1e-3) };
     for method in [Method::Displacement, Method::Fit] {

@@ -6,6 +6,7 @@ mod errors;
 mod fairness;
 mod invariants;
 mod parts;
+mod sweep;
 mod vectors;
 
 #[path = "../support/nets.rs"]

@@ -188,6 +188,18 @@ pub enum PasteError {
         /// Index of the other.
         second: usize,
     },
+    /// A carried hole does not lie within the target, or crosses its seam.
+    #[error("a hole of the feature leaves the target surface, or crosses its seam")]
+    HoleOutsideTarget,
+    /// A hole would open a closed shell.
+    #[error(
+        "a hole of the feature would open the solid that the target face {face} belongs to; expected \
+         `holes = \"close\"`, or a face of a sheet"
+    )]
+    HoleOpensSolid {
+        /// Name of the face.
+        face: String,
+    },
     /// The pasted region meets a loop of the target face.
     #[error(
         "the pasted region meets loop {held} of the target face: move the feature, or set `loops = \"protect\"`"
@@ -225,6 +237,8 @@ impl PasteError {
             Self::NoSuchLoop { .. } => "paste.no-such-loop",
             Self::PlaceOffFace { .. } => "paste.place-off-face",
             Self::PlacesOverlap { .. } => "paste.places-overlap",
+            Self::HoleOutsideTarget => "paste.hole-outside-target",
+            Self::HoleOpensSolid { .. } => "paste.hole-opens-solid",
             Self::TargetLoopInRegion { .. } => "paste.target-loop-in-region",
         }
     }

@@ -5,6 +5,7 @@
 
 use super::PasteError;
 use super::base::{smoothed, solve, with_net};
+use super::creases::mended;
 use super::frames::frame_of;
 use super::identify::{contour_polygon, refine_for_region};
 use super::settings::{Existing, Feature, Ground, Method, Mirror, ParameterMap, Pasted, Settings};
@@ -16,7 +17,7 @@ use crate::ops::net::{CellGrid, Mask, Polygon};
 /// Rows and columns of own control points that a region needs.
 const NEEDED: usize = 6;
 /// Degree to which a target of lower degree is raised, unless the source's is lower.
-const DEGREE: usize = 3;
+pub(super) const DEGREE: usize = 3;
 /// Times the density may be doubled.
 const MAX_LEVEL: u32 = 3;
 /// Parts of the greatest entry below which an entry of the parameter map says nothing about density.
@@ -268,7 +269,6 @@ fn fit(
     };
     let system = System::gather(field, &ground, &cells, &free);
     let solution = system.solve()?;
-    let error = system.error(&solution);
     let columns = free.count();
     let mut net = ground.net().to_vec();
     for (k, at) in free.indices().enumerate() {
@@ -277,6 +277,14 @@ fn fit(
             *coordinate += weight * solution[c * columns + k];
         }
     }
+    let net = mended(&ground, &with_net(refined, net)?, &free);
+    let mut solution = solution;
+    for (k, at) in free.indices().enumerate() {
+        for c in 0..3 {
+            solution[c * columns + k] = (net[at][c] - ground.net()[at][c]) / net[at][3];
+        }
+    }
+    let error = system.error(&solution);
     Ok(Fitted { surface: with_net(refined, net)?, free, error })
 }
 
@@ -348,7 +356,7 @@ impl<'a> System<'a> {
         {
             let mut local: Vec<f64> = Vec::new();
             let mut places: Vec<usize> = Vec::new();
-            for sample in of_cell {
+            for sample in of_cell.iter().filter(|sample| sample.weight > 0.0) {
                 self.entries(sample, &mut entries);
                 if local.is_empty() {
                     places = entries.iter().map(|e| e.0).collect();
@@ -390,13 +398,17 @@ impl<'a> System<'a> {
     }
 }
 
-/// For each cell of one direction its Gauss points: basis, weight and parameter.
+/// Places of a cell, from -1 to 1, between the Gauss points and its ends, at which a fit is compared too.
+const BETWEEN: [f64; 2] = [-0.97, 0.97];
+
+/// For each cell of one direction its Gauss points: basis, weight and parameter; and, with weight 0, places between.
 fn gauss_lines(knots: &KnotVector) -> Vec<Vec<(LocalBasis, f64, f64)>> {
     let (nodes, weights) = gauss_legendre(knots.degree() + 1);
     let (distinct, _) = knots.distinct();
     let of_cell = |w: &[f64]| {
         let (half, middle) = (0.5 * (w[1] - w[0]), 0.5 * (w[0] + w[1]));
-        let points = nodes.iter().zip(&weights);
+        let between = BETWEEN.iter().map(|x| (x, &0.0));
+        let points = nodes.iter().zip(&weights).chain(between);
         points
             .map(|(x, weight)| {
                 let at = middle + half * x;

@@ -3,6 +3,7 @@
 use super::PasteError;
 use super::base::{smoothed, with_net};
 use super::block::{Block, euclidean};
+use super::creases::mended;
 use super::displacement::displaced;
 use super::identify::{contour_polygon, refine_for_region};
 use super::laplacian::{biharmonic, poisson};
@@ -44,6 +45,7 @@ pub(super) fn paste(
         net[block.places[at]] = point;
     }
     let surface = with_net(&nets.target, net)?;
+    let surface = with_net(&nets.target, mended(&nets.target, &surface, &nets.partners))?;
     let lost_base = smoothed(&nets.source, &nets.own.union(&nets.lost))?;
     let off = |at: usize| (euclidean(&nets.source.net()[at]) - euclidean(&lost_base.net()[at])).norm();
     let lost_detail = nets.lost.indices().map(off).fold(0.0, f64::max);

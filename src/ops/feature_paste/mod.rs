@@ -9,9 +9,11 @@
 //! Source: Poisson reuse of freeform features with the corrections of `docs/decisions/feature-paste.md`; displacement
 //! and fit are our own.
 
+mod across_seam;
 mod base;
 mod block;
 pub mod contour;
+mod creases;
 mod displacement;
 pub mod error;
 mod fit;

@@ -112,6 +112,16 @@ impl Mask {
         }))
     }
 
+    /// The set with rows and columns exchanged.
+    #[must_use]
+    pub fn transposed(&self) -> Self {
+        let mut out = Self::empty(self.columns, self.rows);
+        for at in self.indices() {
+            out.insert(at % self.columns, at / self.columns);
+        }
+        out
+    }
+
     /// Whether two sets of the same shape share a place.
     #[must_use]
     pub fn meets(&self, other: &Self) -> bool {

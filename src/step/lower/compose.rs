@@ -118,6 +118,15 @@ fn multiplicities(knots: &KnotVector) -> (Value, Value) {
     (Value::list(counts, Value::Integer), Value::list(values, Value::Real))
 }
 
+/// The context of a curve in parameters.
+pub(super) fn parametric_context() -> Body {
+    Body(vec![
+        ("GEOMETRIC_REPRESENTATION_CONTEXT", vec![Value::Integer(2)]),
+        ("PARAMETRIC_REPRESENTATION_CONTEXT", vec![]),
+        ("REPRESENTATION_CONTEXT", vec![Value::verbatim("'2D SPACE'"), Value::empty_name()]),
+    ])
+}
+
 fn unspecified() -> Value {
     Value::verbatim(".UNSPECIFIED.")
 }

@@ -63,7 +63,10 @@ impl Lowering<'_> {
                     curve.transformed(&unit).map_err(unwritable)
                 }
             };
-            let old = self.model.brep.coedges[coedge].pcurve.as_ref().map(in_file).transpose()?;
+            // What the file says now counts in the unit of the surface that it lies on now.
+            let same_unit = unit == self.file_parameters(coedge, &ChangeSet::default());
+            let old = self.model.brep.coedges[coedge].pcurve.as_ref().filter(|_| same_unit);
+            let old = old.map(in_file).transpose()?;
             self.curves.add(target, token, NewCurve::Plane { old, new: in_file(new)? });
         }
         Ok(())
@@ -240,7 +243,7 @@ impl Lowering<'_> {
         self.append(&body)
     }
 
-    fn append_curve2d(
+    pub(super) fn append_curve2d(
         &mut self,
         old: InstanceName,
         curve: &Curve2d,

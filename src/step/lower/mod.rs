@@ -12,6 +12,7 @@
 //! highest; the same change set gives the same edits.
 
 mod access;
+mod bound;
 mod compose;
 mod curve;
 mod derived_curve;
@@ -26,6 +27,7 @@ use super::edit;
 use super::exchange_structure::{ExchangeStructure, InstanceName};
 use super::reverse_index::ReverseIndex;
 use super::write::{LineEnding, RecordWriter};
+use crate::brep::FaceId;
 use crate::exchange::{Edit, NameAllocator, Patch, PatchError};
 use crate::model::{ChangeSet, Model, Origin};
 use crate::source::Span;
@@ -104,6 +106,7 @@ pub fn lower(structure: &ExchangeStructure, model: &Model, changes: &ChangeSet) 
         return lowering.finish();
     }
     lowering.surfaces(changes)?;
+    lowering.bounds(changes)?;
     lowering.request_edge_curves(changes)?;
     lowering.request_pcurves(changes)?;
     lowering.request_free_curves(changes)?;
@@ -130,6 +133,8 @@ struct Lowering<'a> {
     /// References that a record makes more than once, for each record that was asked.
     repeated: BTreeMap<u32, BTreeMap<InstanceName, usize>>,
     ending: LineEnding,
+    /// Faces whose surface was appended, with its name.
+    own_surfaces: BTreeMap<FaceId, InstanceName>,
     curves: Requests<request::NewCurve>,
     placements: Requests<request::NewPlacement>,
     vectors: Requests<request::NewVector>,
@@ -149,6 +154,7 @@ impl<'a> Lowering<'a> {
             lost: BTreeMap::new(),
             repeated: BTreeMap::new(),
             ending: LineEnding::of(structure.source().bytes()),
+            own_surfaces: BTreeMap::new(),
             curves: Requests::default(),
             placements: Requests::default(),
             vectors: Requests::default(),

@@ -58,6 +58,7 @@ impl Lowering<'_> {
         let user = super::instance_name(self.model.origins.faces[face])?;
         let (token, _) = self.reference(user, "face_geometry")?;
         self.repoint(token, old, name);
+        self.own_surfaces.insert(face, name);
         for pcurve in self.pcurves_on(&[face])? {
             let (token, _) = self.reference(pcurve, "basis_surface")?;
             self.repoint(token, old, name);

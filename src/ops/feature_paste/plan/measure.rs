@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::super::settings::Pasted;
-use super::{Place, region_of};
+use super::Place;
 use crate::ops::net::sampling::steps;
 
 /// Figures of one operation.
@@ -13,6 +13,16 @@ pub struct Measures {
     pub face: String,
     /// Control points before and after.
     pub control_points: [usize; 2],
+    /// Kind of the surface that was made a B-spline, exactly; absent for a face that was one, or a plane.
+    pub converted: Option<String>,
+    /// Greatest distance in space by which its new curves in parameters miss the old ones.
+    pub pcurve_error: Option<f64>,
+    /// Holes of the feature that became bounds of the face.
+    pub holes: usize,
+    /// Greatest distance of their curves from the surface.
+    pub hole_error: Option<f64>,
+    /// Whether the seam along `u`, and along `v`, moved with the feature.
+    pub seam_moved: [bool; 2],
     /// One for each place, in order.
     pub places: Vec<PlaceMeasures>,
 }
@@ -51,13 +61,24 @@ const COLLAR: f64 = 0.08;
 const FLAT: f64 = 1e-9;
 
 /// Measures one place.
-pub(super) fn measure(place: &Place, pasted: &Pasted, protected: usize) -> PlaceMeasures {
-    let region = region_of(pasted);
+///
+/// The region may reach past the ends of a domain that closes on itself.
+pub(super) fn measure(
+    place: &Place,
+    pasted: &Pasted,
+    region: [(f64, f64); 2],
+    protected: usize,
+) -> PlaceMeasures {
+    let (du, dv) = pasted.surface.domain();
+    let wrapped = |x: f64, (start, end): (f64, f64)| {
+        if x >= start && x <= end { x } else { start + (x - start).rem_euclid(end - start) }
+    };
     let (rows, columns) = pasted.surface.shape();
     let mut height = 0.0_f64;
     let mut curvature = [0.0_f64; 2];
     for (i, u) in steps(region[0].0, region[0].1, SAMPLES).enumerate() {
         for (j, v) in steps(region[1].0, region[1].1, SAMPLES).enumerate() {
+            let (u, v) = (wrapped(u, du), wrapped(v, dv));
             let (new, old) = (pasted.surface.derivatives(u, v), pasted.refined.derivatives(u, v));
             height = height.max((new.point - old.point).norm());
             let near = |k: usize| (k.min(SAMPLES - 1 - k) as f64) < COLLAR * SAMPLES as f64;

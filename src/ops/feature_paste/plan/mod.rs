@@ -3,22 +3,29 @@
 //! The source may be a face of another file, in other units. Loops of the target are kept clear of the feature, or
 //! the paste is refused. Pure: no I/O. All or nothing.
 
+mod exact;
+mod hermite;
+mod holes;
 mod measure;
 mod source;
 mod target;
 
+pub use holes::Hole;
 pub use measure::{Measures, PlaceMeasures};
+pub use source::{Extracted, extract};
 
-use super::settings::{Mirror, Pasted, Settings};
-use super::{Feature, Ground, PasteError, contour::Plane, paste};
-use crate::brep::FaceId;
+use super::across_seam::paste_across;
+use super::settings::{Existing, Mirror, Pasted, Settings};
+use super::{Feature, Ground, PasteError, contour::Plane};
+use crate::brep::{BodyKind, FaceId};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::geometry::Surface;
 use crate::geometry::nurbs::NurbsSurface;
 use crate::math::{Affine, Matrix3, Point3, Vector3};
-use crate::model::{ChangeSet, Model};
+use crate::model::Model;
+use crate::model::change_set::NewBound;
 use crate::ops::OperationError;
 use crate::ops::net::Mask;
+use crate::ops::net::layout::face_name;
 
 /// What holds the feature on the source face. Lengths are in the source's units.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,9 +40,19 @@ pub enum Region {
     Contour(Vec<Point3<f64>>, Option<Plane>),
 }
 
+/// What becomes of loops of the source inside the region.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Holes {
+    /// The surface is pasted across them.
+    #[default]
+    Close,
+    /// The target gets them too.
+    Carry,
+}
+
 /// The feature's face.
 #[derive(Debug, Clone)]
-pub struct Source<'a> {
+pub struct FaceSource<'a> {
     /// Model that the face is in.
     pub model: &'a Model,
     /// The face.
@@ -75,7 +92,7 @@ pub enum TargetLoops {
 #[derive(Debug, Clone)]
 pub struct Params<'a> {
     /// Where the feature comes from.
-    pub source: Source<'a>,
+    pub source: &'a Extracted,
     /// The face that takes it.
     pub target: FaceId,
     /// Where it goes; each place has its own angle, mirror and scale, those of `settings` are not read.
@@ -86,13 +103,15 @@ pub struct Params<'a> {
     pub tolerance: Option<f64>,
     /// Loops of the target in the way.
     pub loops: TargetLoops,
+    /// Loops of the source inside the region.
+    pub holes: Holes,
 }
 
 /// What is to be done, and what is known about it beforehand.
 #[derive(Debug, Clone)]
 pub struct Plan {
     /// New geometry.
-    pub change_set: ChangeSet,
+    pub change_set: crate::model::ChangeSet,
     /// Figures for the report.
     pub measures: Measures,
     /// Facts worth telling.
@@ -112,39 +131,47 @@ const LOST: f64 = 1e-6;
 pub fn plan(model: &Model, params: &Params<'_>) -> Result<Plan, OperationError> {
     let target = target::Target::of(model, params.target)?;
     let sense = target::natural_sense(model, params.target);
-    let source = source::Prepared::of(&params.source, model.context_of(params.target), sense)?;
-    let mut notes = source.notes.clone();
+    let source = source::Prepared::of(params.source, model.context_of(params.target), sense)?;
+    let mut notes = Vec::new();
+    let carries = params.holes == Holes::Carry && !source.holes.is_empty();
+    if carries && opens_solid(model, params.target) {
+        return Err(PasteError::HoleOpensSolid { face: face_name(model, params.target) }.into());
+    }
+    if !carries && !source.holes.is_empty() {
+        let count = source.holes.len();
+        let message =
+            format!("{count} holes of the feature are not carried: the surface is pasted across them");
+        notes.push(note("paste.holes-closed", Severity::Warning, message));
+    }
+    let mut holes: Vec<Hole> = Vec::new();
     let mut surface = target.surface.clone();
     let mut places: Vec<PlaceMeasures> = Vec::new();
     let mut regions: Vec<[(f64, f64); 2]> = Vec::new();
+    let mut seam_moved = [false; 2];
     let before = surface.net().len();
     for place in &params.places {
-        let at = target.locate(&surface, place)?;
-        let greatest = place.scale.iter().fold(0.0, |a: f64, s| a.max(s.abs()));
-        let settings = Settings {
-            scale: place.scale,
-            mirror: place.mirror,
-            angle: snapped(place.angle + turn_to(&surface, at, place.along)?),
-            tolerance: params.tolerance.unwrap_or(TOLERANCE * source.size * greatest),
-            ..params.settings.clone()
-        };
-        let feature = Feature { source: &source.surface, contour: &source.contour, anchor: source.anchor };
-        let mut pasted = paste(&feature, &Ground { target: &surface, at }, &settings)?;
-        let region = region_of(&pasted);
-        if let Some(first) = regions.iter().position(|other| overlap(other, &region)) {
+        let one = pasted_at(&target, &source, &surface, place, params)?;
+        if let Some(first) = regions.iter().position(|other| target.overlap(other, &one.region)) {
             return Err(PasteError::PlacesOverlap { first, second: regions.len() }.into());
         }
-        regions.push(region);
-        let cut = keep_loops(&target, &mut pasted, params.loops)?;
-        if cut > 0 {
-            notes.push(note(
-                "paste.cut-at-loops",
-                Severity::Warning,
-                format!("{cut} control points stay, because they act on loops of the target: the feature is cut off there"),
-            ));
+        regions.push(one.region);
+        if one.cut > 0 {
+            let message = format!(
+                "{} control points stay, because they act on loops of the target: the feature is cut off there",
+                one.cut
+            );
+            notes.push(note("paste.cut-at-loops", Severity::Warning, message));
         }
-        places.push(measure::measure(place, &pasted, cut));
-        surface = pasted.surface;
+        for (k, moved) in seam_moved.iter_mut().enumerate() {
+            *moved |= on_seam(&one.pasted.changed, k);
+        }
+        if carries {
+            for hole in &source.holes {
+                holes.push(holes::carried(hole, &one.pasted.map, &one.pasted.surface, target.round)?);
+            }
+        }
+        places.push(measure::measure(place, &one.pasted, one.region, one.cut));
+        surface = one.pasted.surface;
     }
     let lost = places.iter().map(|place| place.lost_detail).fold(0.0, f64::max);
     if lost > LOST * source.size {
@@ -153,14 +180,96 @@ pub fn plan(model: &Model, params: &Params<'_>) -> Result<Plan, OperationError> 
         );
         notes.push(note("paste.region-reduced", Severity::Warning, message));
     }
-    let measures = Measures {
+    let mut measures = Measures {
         face: model.origins.faces[params.target].to_string(),
         control_points: [before, surface.net().len()],
+        holes: holes.len(),
+        hole_error: None,
+        converted: target.converted.map(str::to_owned),
+        pcurve_error: target.converted.map(|_| target.pcurve_error),
+        seam_moved,
         places,
     };
-    let mut change_set = ChangeSet::default();
-    change_set.surfaces.insert(params.target, Surface::Nurbs(surface));
+    let bounds = new_bounds(model, params.target, &surface, &holes, &mut measures)?;
+    let mut change_set = target.changes(model, params.target, surface, seam_moved);
+    if !bounds.is_empty() {
+        change_set.bounds.insert(params.target, bounds);
+    }
     Ok(Plan { change_set, measures, notes })
+}
+
+/// The carried holes as bounds of the target on its finished surface.
+fn new_bounds(
+    model: &Model,
+    face: FaceId,
+    surface: &NurbsSurface,
+    holes: &[Hole],
+    measures: &mut Measures,
+) -> Result<Vec<NewBound>, OperationError> {
+    let uncertainty = model.context_of(face).uncertainty.map(|t| t.0);
+    let tolerance = exact::carry_tolerance(uncertainty, surface.bounding_box().diagonal());
+    let sense = model.brep.faces[face].same_sense;
+    let mut bounds = Vec::new();
+    for hole in holes {
+        let (bound, error) = holes::bound(hole, surface, sense, tolerance)?;
+        measures.hole_error = Some(measures.hole_error.unwrap_or(0.0).max(error));
+        bounds.push(bound);
+    }
+    Ok(bounds)
+}
+
+/// Whether a hole in the face would open a closed shell.
+fn opens_solid(model: &Model, face: FaceId) -> bool {
+    let shell = &model.brep.shells[model.brep.faces[face].shell];
+    shell.closed || model.brep.bodies[shell.body].kind == BodyKind::Solid
+}
+
+/// One place done.
+struct PastedAt {
+    pasted: Pasted,
+    /// Parameters that it acts on, in the covering plane.
+    region: [(f64, f64); 2],
+    /// Control points that stayed for loops of the target.
+    cut: usize,
+}
+
+fn pasted_at(
+    target: &target::Target,
+    source: &source::Prepared,
+    surface: &NurbsSurface,
+    place: &Place,
+    params: &Params<'_>,
+) -> Result<PastedAt, OperationError> {
+    let at = target.locate(surface, place)?;
+    let greatest = place.scale.iter().fold(0.0, |a: f64, s| a.max(s.abs()));
+    let settings = Settings {
+        scale: place.scale,
+        mirror: place.mirror,
+        angle: snapped(place.angle + turn_to(surface, at, place.along)?),
+        tolerance: params.tolerance.unwrap_or(TOLERANCE * source.size * greatest),
+        // An exact quadric has nothing in the feature's way.
+        existing: match (params.settings.existing, target.converted) {
+            (Existing::Replace, Some(_)) => Existing::Keep,
+            (existing, _) => existing,
+        },
+        ..params.settings.clone()
+    };
+    target.refuse_method(&settings)?;
+    let feature = Feature { source: &source.surface, contour: &source.contour, anchor: source.anchor };
+    let crossed = paste_across(&feature, &Ground { target: surface, at }, &settings, target.round)?;
+    let (mut pasted, region) = (crossed.pasted, crossed.region);
+    let cut = keep_loops(target, &mut pasted, params.loops)?;
+    Ok(PastedAt { pasted, region, cut })
+}
+
+/// Whether a set has a place on the first line of a direction.
+fn on_seam(changed: &Mask, k: usize) -> bool {
+    let (rows, columns) = changed.shape();
+    if k == 0 {
+        (0..columns).any(|j| changed.contains(0, j))
+    } else {
+        (0..rows).any(|i| changed.contains(i, 0))
+    }
 }
 
 fn note(code: &'static str, severity: Severity, message: String) -> Diagnostic {
@@ -185,17 +294,6 @@ fn turn_to(surface: &NurbsSurface, at: [f64; 2], along: Option<Vector3<f64>>) ->
         return Err(PasteError::BadSetting { what: "along", expected: "a direction in the surface", found });
     }
     Ok(y.atan2(x))
-}
-
-/// Parameters that the changed control points act on; where none has changed, a corner, which overlaps nothing.
-fn region_of(pasted: &Pasted) -> [(f64, f64); 2] {
-    let knots = [pasted.surface.knots_u(), pasted.surface.knots_v()];
-    let corner = || knots.map(|along| (along.domain().0, along.domain().0));
-    pasted.changed.support(knots).unwrap_or_else(corner)
-}
-
-fn overlap(a: &[(f64, f64); 2], b: &[(f64, f64); 2]) -> bool {
-    (0..2).all(|k| a[k].0 < b[k].1 && b[k].0 < a[k].1)
 }
 
 /// Takes back what would move a loop of the target, or refuses; gives the count of control points that stay.

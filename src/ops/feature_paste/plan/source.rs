@@ -2,16 +2,60 @@
 
 use super::super::contour::{Plane, project_contour};
 use super::super::error::PasteError;
+use super::holes::{Hole, hole_of};
 use super::target::natural_sense;
-use super::{Region, Source, note};
-use crate::diagnostic::{Diagnostic, Severity};
+use super::{FaceSource, Region};
+use crate::brep::parameter_loop::{LoopSampling, parameter_loops};
 use crate::geometry::Surface;
-use crate::geometry::nurbs::{NurbsSurface, SurfaceLocator, Wrap};
+use crate::geometry::nurbs::{NurbsCurve2, NurbsSurface, SurfaceLocator, Wrap};
 use crate::math::{Affine, BoundingBox, Matrix3, Vector3};
 use crate::model::Context;
 use crate::ops::OperationError;
 use crate::ops::net::Polygon;
 use crate::ops::net::layout::{face_name, lay_out, spline_of};
+
+/// A feature taken off its face: all that a paste needs of it, in its own units.
+#[derive(Debug, Clone)]
+pub struct Extracted {
+    /// The surface that the face lies on.
+    pub surface: NurbsSurface,
+    /// Closed polygon round the feature in its parameters.
+    pub contour: Vec<[f64; 2]>,
+    /// Parameters that go to the place on the target.
+    pub anchor: [f64; 2],
+    /// Length of its unit, in metres.
+    pub metres: f64,
+    /// Whether the surface's normal is the outward one of its face.
+    pub natural: bool,
+    /// Loops of the face inside the contour.
+    pub holes: Vec<Hole>,
+}
+
+/// Takes a feature off its face.
+///
+/// # Errors
+/// [`PasteError::SurfaceKind`], [`PasteError::NoSuchLoop`], and the contour errors.
+pub fn extract(source: &FaceSource<'_>) -> Result<Extracted, OperationError> {
+    let model = source.model;
+    let surface = spline_of(model, source.face).ok_or_else(|| {
+        let found = model.brep.surface_of(source.face).read().map_or("not read", Surface::kind);
+        PasteError::SurfaceKind {
+            side: "source",
+            face: face_name(model, source.face),
+            kind: found.to_owned(),
+            expected: "a feature is taken from a B-spline surface",
+        }
+    })?;
+    let (contour, holes) = contour(source, surface)?;
+    Ok(Extracted {
+        anchor: anchor(source, surface, &contour),
+        surface: surface.clone(),
+        contour,
+        metres: model.context_of(source.face).length.metres,
+        natural: natural_sense(model, source.face),
+        holes,
+    })
+}
 
 /// A source that the numeric core can take.
 #[derive(Debug, Clone)]
@@ -24,8 +68,8 @@ pub(super) struct Prepared {
     pub anchor: [f64; 2],
     /// Size of the feature in space.
     pub size: f64,
-    /// What is worth telling.
-    pub notes: Vec<Diagnostic>,
+    /// Its holes.
+    pub holes: Vec<Hole>,
 }
 
 /// Ratio of two units that counts as one: the same unit written differently.
@@ -33,49 +77,46 @@ const SAME_UNIT: f64 = 1e-12;
 
 impl Prepared {
     /// `sense` tells whether the target's surface normal is its face's.
-    pub fn of(source: &Source<'_>, target: &Context, sense: bool) -> Result<Self, OperationError> {
-        let model = source.model;
-        let raw = spline_of(model, source.face).ok_or_else(|| {
-            let found = model.brep.surface_of(source.face).read().map_or("not read", Surface::kind);
-            PasteError::SurfaceKind {
-                side: "source",
-                face: face_name(model, source.face),
-                kind: found.to_owned(),
-                expected: "a feature is taken from a B-spline surface",
-            }
-        })?;
-        let (contour, notes) = contour(source, raw)?;
-        let anchor = anchor(source, raw, &contour);
-        let factor = model.context_of(source.face).length.metres / target.length.metres;
-        let mut surface = raw.clone();
+    pub fn of(feature: &Extracted, target: &Context, sense: bool) -> Result<Self, PasteError> {
+        let factor = feature.metres / target.length.metres;
+        let mut surface = feature.surface.clone();
         if (factor - 1.0).abs() > SAME_UNIT {
             let map = Affine { linear: Matrix3::identity() * factor, translation: Vector3::zeros() };
             surface = surface.transformed(&map);
         }
+        let contour = feature.contour.clone();
         let points: Vec<_> = contour.iter().map(|p| surface.point(p[0], p[1])).collect();
         let size = BoundingBox::of(&points).diagonal();
-        let mut prepared = Self { surface, contour, anchor, size, notes };
-        if natural_sense(model, source.face) != sense {
-            prepared.reverse();
+        let mut prepared =
+            Self { surface, contour, anchor: feature.anchor, size, holes: feature.holes.clone() };
+        if feature.natural != sense {
+            prepared.reverse()?;
         }
         Ok(prepared)
     }
 
     /// Lets `v` run the other way, so that the surface's normal turns to the other side.
-    fn reverse(&mut self) {
+    fn reverse(&mut self) -> Result<(), PasteError> {
         let (_, (start, end)) = self.surface.domain();
         self.surface = self.surface.reversed_v();
         let mirror = |p: [f64; 2]| [p[0], start + (end - p[1])];
         self.contour.iter_mut().for_each(|p| *p = mirror(*p));
         self.anchor = mirror(self.anchor);
+        for curve in self.holes.iter_mut().flatten() {
+            let image = |p: &[f64; 3]| [p[0], (start + end) * p[2] - p[1], p[2]];
+            let net = curve.points().iter().map(image).collect();
+            *curve =
+                NurbsCurve2::new(curve.knots().clone(), net).map_err(|_| PasteError::HoleOutsideTarget)?;
+        }
+        Ok(())
     }
 }
 
-/// The contour in the parameters of the source, with a note when it holds holes.
+/// The contour in the parameters of the source, and the holes inside it.
 fn contour(
-    source: &Source<'_>,
+    source: &FaceSource<'_>,
     surface: &NurbsSurface,
-) -> Result<(Vec<[f64; 2]>, Vec<Diagnostic>), OperationError> {
+) -> Result<(Vec<[f64; 2]>, Vec<Hole>), OperationError> {
     let (model, face) = (source.model, source.face);
     let no_loop = |wanted: String| PasteError::NoSuchLoop { face: face_name(model, face), wanted };
     let layout = lay_out(model, face)?;
@@ -100,24 +141,25 @@ fn contour(
         }
     };
     let (u, v) = surface.domain();
-    let mut notes = Vec::new();
-    if let Ok(polygon) = Polygon::new(&points, [0.0; 2], [u, v]) {
-        let inside = |k: usize| {
-            let shape = layout.loops[k].as_ref().filter(|_| layout.is_inner(k) && Some(k) != chosen);
-            shape.is_some_and(|l| l.contour.points.first().is_some_and(|&p| polygon.contains(p)))
-        };
-        let holes = (0..layout.loops.len()).filter(|&k| inside(k)).count();
-        if holes > 0 {
-            let message =
-                format!("{holes} holes of the feature are not carried: the surface is pasted across them");
-            notes.push(note("paste.holes-closed", Severity::Warning, message));
-        }
+    let Ok(polygon) = Polygon::new(&points, [0.0; 2], [u, v]) else { return Ok((points, Vec::new())) };
+    let inside = |k: &usize| {
+        let shape = layout.loops[*k].as_ref().filter(|_| layout.is_inner(*k) && Some(*k) != chosen);
+        shape.is_some_and(|l| l.contour.points.first().is_some_and(|&p| polygon.contains(p)))
+    };
+    let within: Vec<usize> = (0..layout.loops.len()).filter(inside).collect();
+    if within.is_empty() {
+        return Ok((points, Vec::new()));
     }
-    Ok((points, notes))
+    let traced =
+        parameter_loops(&model.brep, face, &LoopSampling::of_tolerance(f64::INFINITY)).map_err(|e| {
+            OperationError::NoParameterLoops { face: face_name(model, face), reason: e.to_string() }
+        })?;
+    let holes = within.into_iter().map(|k| hole_of(&model.brep, &traced[k], surface)).collect();
+    Ok((points, holes))
 }
 
 /// Parameters of the anchor: nearest to the given point, or the middle of the contour's box.
-fn anchor(source: &Source<'_>, surface: &NurbsSurface, contour: &[[f64; 2]]) -> [f64; 2] {
+fn anchor(source: &FaceSource<'_>, surface: &NurbsSurface, contour: &[[f64; 2]]) -> [f64; 2] {
     if let Some(point) = &source.anchor {
         let found = SurfaceLocator::new(surface, Wrap::default()).closest(point);
         return [found.u, found.v];
