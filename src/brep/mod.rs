@@ -6,6 +6,7 @@
 pub mod check;
 pub mod edge_samples;
 pub mod id;
+pub mod mass_properties;
 pub mod parameter_loop;
 
 use crate::geometry::{Carried, Curve, Curve2d, Surface};

@@ -99,6 +99,14 @@ const MAX_POINTS: usize = 1 << 14;
 /// tolerance says: far below any detail, far above rounding.
 const SURE_PART: f64 = 1e-6;
 
+/// Part of a surface's box beyond which a seeded projection is not trusted, however coarse the file says it is.
+const COARSE_PART: f64 = 1e-4;
+/// Length of a parameter line, relative to the longest of its kind, above which it is no pole, however coarse the
+/// file says it is: a face may be narrower than the file's uncertainty and yet have two sides.
+const POLE_PART: f64 = 1e-2;
+/// Samples each way that tell the length of parameter lines.
+const LINE_SAMPLES: usize = 4;
+
 /// Part of a parameter curve's domain by which a point may lie past its end through rounding.
 const PAST_END: f64 = 1e-9;
 
@@ -178,6 +186,8 @@ struct Walk<'a> {
     sampling: &'a LoopSampling,
     /// Distance at which a seeded projection is not trusted.
     lost: f64,
+    /// Length at which lines along `u` and `v` are poles.
+    pole: (f64, f64),
     same_sense: bool,
 }
 
@@ -191,8 +201,11 @@ impl<'a> Walk<'a> {
             }
             _ => (None, 0.0),
         };
-        let lost = sampling.tolerance.max(SURE_PART * size);
-        Self { surface, locator, periods, sampling, lost, same_sense }
+        let coarse = if size > 0.0 { COARSE_PART * size } else { f64::INFINITY };
+        let lost = sampling.tolerance.min(coarse).max(SURE_PART * size);
+        let longest = longest_lines(surface);
+        let pole = [longest.0, longest.1].map(|length| sampling.tolerance.min(POLE_PART * length));
+        Self { surface, locator, periods, sampling, lost, pole: (pole[0], pole[1]), same_sense }
     }
 
     fn around(
@@ -349,9 +362,8 @@ impl<'a> Walk<'a> {
         let d = self.surface.derivatives(wu, wv);
         let ((u0, u1), (v0, v1)) = self.surface.domain();
         // The whole parameter line through the point is shorter than the tolerance, as far as its speed tells.
-        let shrunk =
-            |speed: f64, length: f64| length.is_finite() && speed * length <= self.sampling.tolerance;
-        let singular = (shrunk(d.du.norm(), u1 - u0), shrunk(d.dv.norm(), v1 - v0));
+        let shrunk = |speed: f64, length: f64, pole: f64| length.is_finite() && speed * length <= pole;
+        let singular = (shrunk(d.du.norm(), u1 - u0, self.pole.0), shrunk(d.dv.norm(), v1 - v0, self.pole.1));
         Place { at, u, v, gap: (d.point - at.point).norm(), singular }
     }
 
@@ -421,6 +433,23 @@ impl<'a> Walk<'a> {
             place.v += shift.1;
         }
     }
+}
+
+/// The longest of some parameter lines along `u` and along `v`, as far as their speed tells; infinite where the
+/// domain is.
+fn longest_lines(surface: &Surface) -> (f64, f64) {
+    let ((u0, u1), (v0, v1)) = surface.domain();
+    if ![u0, u1, v0, v1].iter().all(|x| x.is_finite()) {
+        return (f64::INFINITY, f64::INFINITY);
+    }
+    let at = |low: f64, high: f64, i: usize| low + (high - low) * ((i as f64 + 0.5) / LINE_SAMPLES as f64);
+    let mut longest = (0.0f64, 0.0f64);
+    for i in 0..LINE_SAMPLES * LINE_SAMPLES {
+        let d = surface.derivatives(at(u0, u1, i % LINE_SAMPLES), at(v0, v1, i / LINE_SAMPLES));
+        longest.0 = longest.0.max(d.du.norm() * (u1 - u0));
+        longest.1 = longest.1.max(d.dv.norm() * (v1 - v0));
+    }
+    longest
 }
 
 impl ParameterLoop {

@@ -109,6 +109,9 @@ pub struct InspectArguments {
     /// Show all faces
     #[arg(long)]
     pub faces: bool,
+    /// Measure volume, area and centroid of each body; takes seconds where faces have thousands of control points
+    #[arg(long)]
+    pub measure: bool,
 }
 
 /// Arguments of `view`.

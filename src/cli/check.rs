@@ -101,7 +101,7 @@ fn examine(
     }
     checked.validators = judged.verdicts;
     Ok(!read.has_errors()
-        && checked.findings.is_empty()
+        && !checked.findings.iter().any(OwnFinding::is_error)
         && checked.validators.iter().all(|verdict| verdict.accepted))
 }
 

@@ -8,6 +8,7 @@ use super::print::Printer;
 use super::show;
 use crate::job::contents::{Contents, TreeEntry, contents};
 use crate::job::failure::PartError;
+use crate::job::measure::{BodyMeasures, measure_bodies, measure_face};
 use crate::job::operate::OperateError;
 use crate::job::part::Read;
 use crate::job::select;
@@ -38,7 +39,14 @@ fn seen(arguments: &InspectArguments, printer: &mut Printer) -> Result<(Contents
         None if arguments.faces => model.brep.faces.ids().collect(),
         None => Vec::new(),
     };
-    Ok((contents(&model, &faces), !read.has_errors()))
+    let mut contents = contents(&model, &faces);
+    if arguments.measure {
+        contents.bodies = measure_bodies(&model);
+        for (entry, &face) in contents.faces.iter_mut().zip(&faces) {
+            entry.measured = measure_face(&model, face);
+        }
+    }
+    Ok((contents, !read.has_errors()))
 }
 
 fn json(contents: &Contents) -> String {
@@ -60,6 +68,19 @@ fn tree_line(node: &TreeEntry) -> String {
     let used = node.occurrence.as_ref().filter(|name| !name.is_empty()).map(|name| format!(" as {name:?}"));
     let bodies = if node.bodies.is_empty() { String::new() } else { format!(": {}", node.bodies.join(" ")) };
     format!("{indent}{:?}{}{}{bodies}", node.product, used.unwrap_or_default(), place.unwrap_or_default())
+}
+
+fn body_line(body: &BodyMeasures) -> String {
+    let mut text = body.id.clone();
+    let mut add = |word: &str, value: Option<f64>| {
+        text += &value.map(|value| format!(" {word} {value}")).unwrap_or_default();
+    };
+    add("volume", body.volume);
+    add("area", body.area);
+    if let Some([x, y, z]) = body.centroid {
+        text += &format!(" centroid ({x}, {y}, {z})");
+    }
+    text + &body.unknown.as_ref().map(|reason| format!(" not measured: {reason}")).unwrap_or_default()
 }
 
 /// A number that people read; one next to nothing would be a long row of zeros.
@@ -105,6 +126,9 @@ fn plain(contents: &Contents) -> String {
     }
     for (kind, count) in &contents.annotations {
         line(kind, count.to_string());
+    }
+    for body in &contents.bodies {
+        line("body", body_line(body));
     }
     for face in &contents.faces {
         let colour = face.colour.as_deref().unwrap_or("no colour");

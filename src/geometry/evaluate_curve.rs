@@ -112,7 +112,7 @@ impl Curve {
     }
 
     /// `t` within the domain of a bounded curve, as if it repeated itself.
-    fn wrapped_parameter(&self, t: f64) -> f64 {
+    pub(crate) fn wrapped_parameter(&self, t: f64) -> f64 {
         match self {
             Self::Nurbs(curve) | Self::Polyline(curve) => curve.knots().wrapped(t),
             Self::Trimmed(_) | Self::Composite(_) => {

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
-use super::measure::{Figures, kind};
+use super::measure::{BodyMeasures, FaceMeasures, Figures, kind};
 use super::select;
 use super::selector::Selector;
 use crate::brep::FaceId;
@@ -26,6 +26,9 @@ pub struct Contents {
     pub groups: Vec<GroupEntry>,
     /// Counts of dimensions, tolerances, datums, presentations, validation properties and tessellations.
     pub annotations: BTreeMap<&'static str, usize>,
+    /// Volume, area and centroid of each body, where they were asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub bodies: Vec<BodyMeasures>,
     /// Faces that were asked for.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub faces: Vec<FaceEntry>,
@@ -103,6 +106,9 @@ pub struct FaceEntry {
     pub product: Option<String>,
     /// Count of bounds.
     pub loops: usize,
+    /// What it measures, where that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub measured: Option<FaceMeasures>,
     /// Area of its triangulation, in square file units.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub area: Option<f64>,
@@ -147,6 +153,7 @@ pub fn contents(model: &Model, faces: &[FaceId]) -> Contents {
             layers: select::layers(model, face),
             product: model.product_of(face).map(|product| product.name.clone()),
             loops: model.brep.faces[face].loops.len(),
+            measured: None,
             area: shape.as_ref().map(|shape| shape.area),
             bounds: shape.map(|shape| shape.bounds),
             neighbours: neighbours(face).into_iter().map(|f| model.origins.faces[f].to_string()).collect(),
@@ -164,6 +171,7 @@ pub fn contents(model: &Model, faces: &[FaceId]) -> Contents {
         tree_cut,
         groups: groups(model),
         annotations,
+        bodies: Vec::new(),
         faces: faces.iter().map(face_entry).collect(),
     }
 }

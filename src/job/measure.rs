@@ -5,7 +5,10 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::brep::mass_properties::{self, Quadrature};
+use crate::brep::{BodyId, BodyKind, FaceId};
 use crate::geometry::{Carried, Surface};
+use crate::math::Point3;
 use crate::model::{Context, Inventory, Model};
 
 /// What is inside a part.
@@ -60,6 +63,114 @@ impl Figures {
         let differing = self.counts.keys().map(|name| (name.clone(), count(self, name), count(other, name)));
         differing.filter(|(_, before, after)| before != after).collect()
     }
+}
+
+/// Distance below which points count as one in a file that does not say: a micrometre.
+const UNCERTAINTY_METRES: f64 = 1e-6;
+
+/// Mass properties of one body of density one, in its file units.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct BodyMeasures {
+    /// Its record.
+    pub id: String,
+    /// Volume of a solid; negative where it is turned inside out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub volume: Option<f64>,
+    /// Bound on its error by the quadrature's own estimate; gaps between edges and surfaces are not in it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub volume_error: Option<f64>,
+    /// Area of its faces.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub area: Option<f64>,
+    /// Bound on its error, as for the volume.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub area_error: Option<f64>,
+    /// Centroid of a solid's volume, else of the area.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub centroid: Option<[f64; 3]>,
+    /// Inertia of a solid about its centroid, row by row: `∫ (|r|² I - r rᵀ) dV`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub inertia: Option<[[f64; 3]; 3]>,
+    /// Greatest distance of an edge from a surface that it bounds: where the faces end is open to this extent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gap: Option<f64>,
+    /// Why there are no numbers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unknown: Option<String>,
+}
+
+/// What one face measures, in its file units.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct FaceMeasures {
+    /// Its area.
+    pub area: f64,
+    /// Bound on its error by the quadrature's own estimate.
+    pub area_error: f64,
+    /// What it adds to the volume by the divergence theorem: that of the cone from the origin.
+    pub flux: f64,
+    /// Its centroid.
+    pub centroid: [f64; 3],
+    /// Greatest distance of its edges from its surface.
+    pub gap: f64,
+}
+
+/// Measures every body, in file order.
+#[must_use]
+pub fn measure_bodies(model: &Model) -> Vec<BodyMeasures> {
+    model.brep.bodies.ids().map(|body| measure_body(model, body)).collect()
+}
+
+/// Distance below which points of a body count as one, in its file units.
+fn uncertainty(model: &Model, body: BodyId) -> f64 {
+    let context = &model.contexts[model.body_context[body]];
+    let said = context.uncertainty.map(|tolerance| tolerance.0);
+    said.unwrap_or(UNCERTAINTY_METRES / context.length.metres)
+}
+
+fn measure_body(model: &Model, body: BodyId) -> BodyMeasures {
+    let mut measures = BodyMeasures {
+        id: model.origins.bodies[body].to_string(),
+        volume: None,
+        volume_error: None,
+        area: None,
+        area_error: None,
+        centroid: None,
+        inertia: None,
+        gap: None,
+        unknown: None,
+    };
+    match mass_properties::of_body(&model.brep, body, &Quadrature::exact(uncertainty(model, body))) {
+        Ok(found) => {
+            let solid = model.brep.bodies[body].kind == BodyKind::Solid;
+            let centroid = if solid { found.centroid() } else { found.area_centroid() };
+            measures.volume = solid.then(|| found.volume());
+            measures.volume_error = solid.then(|| found.volume_error());
+            measures.area = Some(found.area());
+            measures.area_error = Some(found.area_error());
+            measures.centroid = Some(centroid.coords.into());
+            let inertia = found.inertia();
+            measures.inertia = solid.then(|| [0, 1, 2].map(|i| [0, 1, 2].map(|j| inertia[(i, j)])));
+            measures.gap = Some(found.gap());
+        }
+        Err(error) => measures.unknown = Some(error.to_string()),
+    }
+    measures
+}
+
+/// Measures a face; `None` where its surface or its bounds are not known.
+#[must_use]
+pub fn measure_face(model: &Model, face: FaceId) -> Option<FaceMeasures> {
+    let brep = &model.brep;
+    let body = brep.shells[brep.faces[face].shell].body;
+    let quadrature = Quadrature::exact(uncertainty(model, body));
+    let found = mass_properties::of_face(brep, face, &quadrature, Point3::origin()).ok()?;
+    Some(FaceMeasures {
+        area: found.area(),
+        area_error: found.area_error(),
+        flux: found.volume(),
+        centroid: found.area_centroid().coords.into(),
+        gap: found.gap(),
+    })
 }
 
 fn distinct_units(contexts: &[Context]) -> Vec<String> {

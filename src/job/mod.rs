@@ -30,5 +30,6 @@ pub mod select;
 mod select_curve;
 pub mod selector;
 pub mod simplify_file;
+pub mod stale_property;
 
 pub use file::Job;

@@ -2,14 +2,17 @@
 //!
 //! A finding says what the file says; it is compared, never repaired.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::stale_property::stale_properties;
 use crate::brep::check::{self, Finding};
+use crate::brep::{Arena, BodyId, FaceId, VertexId};
+use crate::diagnostic::Severity;
 use crate::document::Document;
-use crate::model::{Model, Origin};
+use crate::model::{ChangeSet, Model, Origin};
 
 /// Distance below which points count as one in a file that does not say: a micrometre, finer than any
 /// exporter's habit and coarser than the digits that they write.
@@ -24,6 +27,11 @@ const SAME_SIZE: f64 = 1.25;
 pub struct OwnFinding {
     /// Stable name of the fact: `edge-off-surface`.
     pub code: String,
+    /// `error`, or `warning` for what a sound part may have.
+    pub severity: String,
+    /// Whether an operation that adds it has failed.
+    #[serde(skip)]
+    pub fails_a_change: bool,
     /// Entity concerned, as the file names it.
     pub entity: String,
     /// Line of its record, from 1.
@@ -34,6 +42,14 @@ pub struct OwnFinding {
     /// By how much, in file units, where the fact is one of distance.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub size: Option<f64>,
+}
+
+impl OwnFinding {
+    /// Whether programs stumble over it.
+    #[must_use]
+    pub fn is_error(&self) -> bool {
+        self.severity == Severity::Error.as_str()
+    }
 }
 
 impl std::fmt::Display for OwnFinding {
@@ -54,13 +70,60 @@ impl std::fmt::Display for OwnFinding {
 /// stretches its gaps with everything else.
 #[must_use]
 pub fn own_findings(document: &Document, model: &Model, growth: f64) -> Vec<OwnFinding> {
-    let tolerance = |body| {
-        let context = &model.contexts[model.body_context[body]];
-        let said = context.uncertainty.map(|tolerance| tolerance.0);
-        growth * said.unwrap_or(UNCERTAINTY_METRES / context.length.metres)
-    };
+    let tolerance = |body| growth * tolerance(model, body);
     let findings = check::check(&model.brep, &tolerance);
+    let mut all: Vec<OwnFinding> =
+        findings.iter().map(|finding| describe(document, model, finding)).collect();
+    all.extend(stale_properties(document, model, &tolerance));
+    all
+}
+
+/// As [`own_findings`], of some faces and their shells: for what an operation has changed.
+#[must_use]
+pub fn findings_of_faces(
+    document: &Document,
+    model: &Model,
+    faces: &BTreeSet<Origin>,
+    growth: f64,
+) -> Vec<OwnFinding> {
+    let chosen = model.origins.faces.iter().filter(|(_, origin)| faces.contains(origin));
+    let chosen: BTreeSet<FaceId> = chosen.map(|(face, _)| face).collect();
+    let findings = check::check_faces(&model.brep, &chosen, &|body| growth * tolerance(model, body));
     findings.iter().map(|finding| describe(document, model, finding)).collect()
+}
+
+/// Distance within which points of a body count as one, in its file units.
+fn tolerance(model: &Model, body: BodyId) -> f64 {
+    let context = &model.contexts[model.body_context[body]];
+    let said = context.uncertainty.map(|tolerance| tolerance.0);
+    said.unwrap_or(UNCERTAINTY_METRES / context.length.metres)
+}
+
+/// Faces whose geometry or border a change set touches, and those that share an edge with them.
+#[must_use]
+pub fn touched(model: &Model, changes: &ChangeSet) -> BTreeSet<Origin> {
+    let brep = &model.brep;
+    let faces_of_edges = brep.faces_of_edges();
+    let mut uses: Arena<VertexId, Vec<FaceId>> = brep.vertices.iter().map(|_| Vec::new()).collect();
+    if !changes.points.is_empty() {
+        for (edge, of) in brep.edges.iter() {
+            for vertex in [of.start, of.end] {
+                uses[vertex].extend(&faces_of_edges[edge]);
+            }
+        }
+    }
+    let mut faces: BTreeSet<FaceId> = changes.surfaces.keys().copied().collect();
+    faces.extend(changes.bounds.keys().copied());
+    faces.extend(changes.curves.keys().flat_map(|&edge| &faces_of_edges[edge]));
+    faces.extend(changes.pcurves.keys().map(|&coedge| brep.loops[brep.coedges[coedge].in_loop].face));
+    faces.extend(changes.points.keys().flat_map(|&vertex| &uses[vertex]));
+    let neighbours: Vec<FaceId> = faces
+        .iter()
+        .flat_map(|&face| brep.coedges_of(face))
+        .flat_map(|coedge| faces_of_edges[brep.coedges[coedge].edge].iter().copied())
+        .collect();
+    faces.extend(neighbours);
+    faces.into_iter().map(|face| model.origins.faces[face]).collect()
 }
 
 /// Findings of a result that its input does not have: another fact, the same on another record, or one that
@@ -92,6 +155,8 @@ fn describe(document: &Document, model: &Model, finding: &Finding) -> OwnFinding
     let place = finding.place();
     OwnFinding {
         code: finding.code().to_owned(),
+        severity: finding.severity().as_str().to_owned(),
+        fails_a_change: finding.fails_a_change(),
         entity: origin.to_string(),
         line: document.line_of(origin),
         place: [place.x, place.y, place.z],
@@ -110,5 +175,15 @@ fn origin(model: &Model, finding: &Finding) -> Origin {
         Finding::FreeEdge(f) => origins.edges[f.edge],
         Finding::OneWayEdge(f) => origins.edges[f.edge],
         Finding::CrowdedEdge(f) => origins.edges[f.edge],
+        Finding::OpenShell(f) => origins.shells[f.shell],
+        Finding::TurnedFace(f) => origins.faces[f.face],
+        Finding::Gap(f) => origins.coedges[f.coedge],
+        Finding::DegenerateEdge(f) => origins.edges[f.edge],
+        Finding::SelfCrossingLoop(f) => origins.loops[f.bound],
+        Finding::OverlappingBounds(f) => origins.loops[f.bound],
+        Finding::SliverFace(f) => origins.faces[f.face],
+        Finding::MissingSeam(f) => origins.faces[f.face],
+        Finding::InconsistentSense(f) => origins.faces[f.face],
+        Finding::SolidInsideOut(f) => origins.bodies[f.body],
     }
 }

@@ -82,7 +82,8 @@ pub struct PartReport {
     /// The output, read again.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub after: Option<super::measure::Figures>,
-    /// Facts that the output violates by our own check, as its input did: a new one fails the part.
+    /// Facts that faces with changes and their neighbours violate in the output, as they did in the input: a new
+    /// one fails the part.
     pub findings: Vec<OwnFinding>,
     /// Answers of other programs about the output.
     pub validators: Vec<Verdict>,

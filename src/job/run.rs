@@ -1,7 +1,7 @@
 //! Runs a job over its parts: each is read, changed, written beside its place, read again, judged by
 //! others, and only then moved into place.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::Instant;
@@ -12,12 +12,12 @@ use super::judge;
 use super::measure::Figures;
 use super::operate::operate;
 use super::output::Staged;
-use super::own_check::{OwnFinding, new_findings, own_findings};
+use super::own_check::{OwnFinding, findings_of_faces, new_findings, touched};
 use super::part::Read;
 use super::plan::Part;
 use super::report::{DiagnosticReport, Edits, PartReport, Report, Status, WritePath};
 use crate::document::Stamp;
-use crate::model::{ChangeSet, Model};
+use crate::model::{ChangeSet, Model, Origin};
 
 /// Whether a run writes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -116,7 +116,9 @@ fn go(job: &Job, part: &Part, mode: Mode, stamp: &Stamp, report: &mut PartReport
 struct Changed {
     /// The bytes of the result; `None` when nothing changes.
     bytes: Option<Vec<u8>>,
-    /// Facts that the input already violated.
+    /// Faces that the operations change, with their neighbours.
+    touched: BTreeSet<Origin>,
+    /// Facts that the input already violated on these.
     findings: Vec<OwnFinding>,
     /// Count of surfaces by kind that the result must have.
     surfaces: BTreeMap<String, usize>,
@@ -146,6 +148,7 @@ fn changed_bytes(
     let mut surfaces = Figures::of(&model).surfaces;
     let mut edges = 0;
     let mut bytes: Option<Vec<u8>> = None;
+    let mut faces: BTreeSet<Origin> = BTreeSet::new();
     for operation in &job.operation {
         // Each operation reads what the ones before it would have written.
         let between = bytes.as_ref().map(|bytes| read_between(bytes, part)).transpose()?;
@@ -160,6 +163,7 @@ fn changed_bytes(
         report.edits = Some(report.edits.map_or(edits, |before| before.followed_by(&edits)));
         if !patch.is_empty() {
             count_kinds(&mut surfaces, model, &changes);
+            faces.extend(touched(model, &changes));
             edges += changes.bounds.values().flatten().map(|bound| bound.edges.len()).sum::<usize>();
             bytes = Some(patch.apply(document.source().bytes()));
         }
@@ -170,7 +174,8 @@ fn changed_bytes(
     report.write_path = Some(WritePath::Patched);
     let stale = read.document.validation_properties();
     report.losses.extend(stale.iter().map(|entity| stale_property(entity)));
-    Ok(Changed { bytes, findings: own_findings(&read.document, &model, 1.0), surfaces, edges })
+    let findings = findings_of_faces(&read.document, &model, &faces, 1.0);
+    Ok(Changed { bytes, touched: faces, findings, surfaces, edges })
 }
 
 /// What an operation has made, as the next one finds it.
@@ -234,8 +239,9 @@ fn read_again(
     if report.write_path == Some(WritePath::Patched) {
         // Of the operations, not of the part's box: a part of an assembly may grow while the box stays.
         let growth = job.operation.iter().map(Operation::growth).product();
-        let own = own_findings(&read.document, &model, growth);
-        findings.extend(new_findings(&wanted.findings, &own, growth).map(ToString::to_string));
+        let own = findings_of_faces(&read.document, &model, &wanted.touched, growth);
+        let new = new_findings(&wanted.findings, &own, growth).filter(|finding| finding.fails_a_change);
+        findings.extend(new.map(ToString::to_string));
         report.findings = own;
     }
     report.after = Some(after);

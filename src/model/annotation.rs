@@ -58,8 +58,13 @@ impl AnnotationKind {
 /// A number with its unit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measure {
+    /// Name of its item, decoded: `volume measure`, `surface area measure`, `centre point`.
+    pub name: String,
     /// As written.
     pub value: f64,
+    /// How many metres, or square or cubic metres, one is; `None` where the file does not say, or it is of another
+    /// quantity.
+    pub metres: Option<f64>,
     /// Name of the unit of length or angle; empty for any other.
     pub unit: String,
 }

@@ -8,6 +8,8 @@ use std::process::Command;
 
 use serde_json::Value;
 
+mod measures;
+
 #[path = "../support/mod.rs"]
 #[allow(dead_code, reason = "shared with other test binaries")]
 mod support;

@@ -1,7 +1,9 @@
 //! Fact: an edge lies on the surface of every face that it bounds.
 
 use super::Finding;
+use super::limits::Limits;
 use crate::brep::{CoedgeId, FaceId, LoopPoint, ParameterLoop};
+use crate::diagnostic::Severity;
 use crate::math::Point3;
 
 /// An edge leaves the surface of its face.
@@ -13,12 +15,14 @@ pub struct EdgeOffSurface {
     pub coedge: CoedgeId,
     /// Greatest distance of the sampled points of the edge from the surface, in file units.
     pub distance: f64,
+    /// A warning where other programs take it for the edge's own tolerance.
+    pub severity: Severity,
     /// The edge's point at that distance.
     pub place: Point3<f64>,
 }
 
 /// Looks at the sampled loops of a face: one finding for each coedge, at its worst point.
-pub(super) fn check(face: FaceId, loops: &[ParameterLoop], tolerance: f64, findings: &mut Vec<Finding>) {
+pub(super) fn check(face: FaceId, loops: &[ParameterLoop], limits: &Limits, findings: &mut Vec<Finding>) {
     for points in loops.iter().flat_map(|l| l.points.chunk_by(|a, b| a.coedge == b.coedge)) {
         let mut worst: &LoopPoint = &points[0];
         for point in points {
@@ -26,11 +30,12 @@ pub(super) fn check(face: FaceId, loops: &[ParameterLoop], tolerance: f64, findi
                 worst = point;
             }
         }
-        if worst.gap > tolerance {
+        if worst.gap > limits.tolerance {
             findings.push(Finding::EdgeOffSurface(EdgeOffSurface {
                 face,
                 coedge: worst.coedge,
                 distance: worst.gap,
+                severity: limits.severity(worst.gap),
                 place: worst.point,
             }));
         }

@@ -5,20 +5,33 @@
 //!
 //! Geometry that was not read is passed over: that it is missing is said elsewhere.
 
+mod crossing;
+mod degenerate_edge;
 mod edge_off_surface;
 mod edge_use;
+mod inside_out;
+mod limits;
 mod open_loop;
 mod orientation;
 mod pcurve_off_edge;
+mod survey;
 mod vertex_off_edge;
 
-use super::{BodyId, Brep, FaceId, LoopSampling, ParameterLoop, parameter_loops};
+use super::{BodyId, Brep, FaceId, LoopSampling, ParameterLoop, parameter_loops_with};
+use crate::diagnostic::Severity;
 use crate::math::Point3;
+pub use crossing::{OverlappingBounds, SelfCrossingLoop};
+pub use degenerate_edge::{DegenerateEdge, Gap};
 pub use edge_off_surface::EdgeOffSurface;
-pub use edge_use::{CrowdedEdge, FreeEdge, OneWayEdge};
+pub use edge_use::{CrowdedEdge, FreeEdge, OneWayEdge, OpenShell, TurnedFace};
+use inside_out::Fan;
+pub use inside_out::{InconsistentSense, MissingSeam, SliverFace, SolidInsideOut};
+use limits::Limits;
 pub use open_loop::OpenLoop;
 pub use orientation::{BoundKind, ReversedLoop};
 pub use pcurve_off_edge::PcurveOffEdge;
+use std::collections::BTreeSet;
+use survey::Survey;
 pub use vertex_off_edge::VertexOffEdge;
 
 /// A violated fact.
@@ -40,6 +53,26 @@ pub enum Finding {
     OneWayEdge(OneWayEdge),
     /// More than two faces of a shell meet at an edge.
     CrowdedEdge(CrowdedEdge),
+    /// A shell that is said to be closed has free edges.
+    OpenShell(OpenShell),
+    /// All neighbours of a face run against it.
+    TurnedFace(TurnedFace),
+    /// The curves of two edges end apart, though their vertex is one.
+    Gap(Gap),
+    /// An edge is shorter than the tolerance.
+    DegenerateEdge(DegenerateEdge),
+    /// A loop crosses itself.
+    SelfCrossingLoop(SelfCrossingLoop),
+    /// Two bounds of a face cross, or an inner one lies outside the outer one.
+    OverlappingBounds(OverlappingBounds),
+    /// A face is narrower than the tolerance.
+    SliverFace(SliverFace),
+    /// Bounds run round a surface and leave a side open where it has no end.
+    MissingSeam(MissingSeam),
+    /// The bounds of a face leave it on the other side than its sense says.
+    InconsistentSense(InconsistentSense),
+    /// A solid's shells enclose a negative volume.
+    SolidInsideOut(SolidInsideOut),
 }
 
 impl Finding {
@@ -55,6 +88,16 @@ impl Finding {
             Self::FreeEdge(_) => "free-edge",
             Self::OneWayEdge(_) => "one-way-edge",
             Self::CrowdedEdge(_) => "crowded-edge",
+            Self::OpenShell(_) => "open-shell",
+            Self::TurnedFace(_) => "turned-face",
+            Self::Gap(_) => "gap",
+            Self::DegenerateEdge(_) => "degenerate-edge",
+            Self::SelfCrossingLoop(_) => "self-crossing-loop",
+            Self::OverlappingBounds(_) => "overlapping-bounds",
+            Self::SliverFace(_) => "sliver-face",
+            Self::MissingSeam(_) => "missing-seam",
+            Self::InconsistentSense(_) => "inconsistent-sense",
+            Self::SolidInsideOut(_) => "solid-inside-out",
         }
     }
 
@@ -70,7 +113,36 @@ impl Finding {
             Self::FreeEdge(f) => f.place,
             Self::OneWayEdge(f) => f.place,
             Self::CrowdedEdge(f) => f.place,
+            Self::OpenShell(f) => f.place,
+            Self::TurnedFace(f) => f.place,
+            Self::Gap(f) => f.place,
+            Self::DegenerateEdge(f) => f.place,
+            Self::SelfCrossingLoop(f) => f.place,
+            Self::OverlappingBounds(f) => f.place,
+            Self::SliverFace(f) => f.place,
+            Self::MissingSeam(f) => f.place,
+            Self::InconsistentSense(f) => f.place,
+            Self::SolidInsideOut(f) => f.place,
         }
+    }
+
+    /// Whether programs stumble over it: an error. A warning is a fact that a sound part may have.
+    #[must_use]
+    pub fn severity(&self) -> Severity {
+        match self {
+            Self::EdgeOffSurface(f) => f.severity,
+            Self::VertexOffEdge(f) => f.severity,
+            Self::PcurveOffEdge(f) => f.severity,
+            Self::Gap(f) => f.severity,
+            Self::DegenerateEdge(_) | Self::SliverFace(_) => Severity::Warning,
+            _ => Severity::Error,
+        }
+    }
+
+    /// Whether an operation that adds it has failed: anything but what a sound part may well have.
+    #[must_use]
+    pub fn fails_a_change(&self) -> bool {
+        !matches!(self, Self::DegenerateEdge(_) | Self::SliverFace(_))
     }
 
     /// Distance by which it is violated, in file units; `None` where the fact is not one of distance.
@@ -81,7 +153,10 @@ impl Finding {
             Self::EdgeOffSurface(f) => Some(f.distance),
             Self::VertexOffEdge(f) => Some(f.distance),
             Self::PcurveOffEdge(f) => Some(f.distance),
-            Self::ReversedLoop(_) | Self::FreeEdge(_) | Self::OneWayEdge(_) | Self::CrowdedEdge(_) => None,
+            Self::Gap(f) => Some(f.distance),
+            Self::DegenerateEdge(f) => Some(f.length),
+            Self::SliverFace(f) => Some(f.width),
+            _ => None,
         }
     }
 }
@@ -89,27 +164,68 @@ impl Finding {
 /// Checks every body, each by its own tolerance, in file units. Findings come body by body, in file order.
 #[must_use]
 pub fn check(brep: &Brep, tolerance: &dyn Fn(BodyId) -> f64) -> Vec<Finding> {
+    let survey = Survey::new(brep);
     let mut findings = Vec::new();
     for (id, body) in brep.bodies.iter() {
-        let tolerance = tolerance(id);
+        let faces = body.shells.iter().flat_map(|&shell| brep.shells[shell].faces.iter().copied());
+        let limits = Limits::new(tolerance(id), survey.extent(faces));
+        let mut fan = Fan::new(brep, id);
         for &shell in &body.shells {
             let faces = &brep.shells[shell].faces;
             edge_use::check(brep, shell, &mut findings);
-            vertex_off_edge::check(brep, faces, tolerance, &mut findings);
+            vertex_off_edge::check(&survey, faces, &limits, &mut findings);
             for &face in faces {
-                check_face(brep, face, tolerance, &mut findings);
+                let loops = check_face(&survey, face, &limits, &mut findings);
+                fan.add(&loops, brep.shells[shell].forward);
             }
+            degenerate_edge::check(&survey, faces, limits.tolerance, &mut findings);
+        }
+        inside_out::check_body(brep, id, &fan, limits.tolerance, &mut findings);
+    }
+    findings
+}
+
+/// As [`check`], of some faces with their edges, and of the shells that these are in: for what an operation
+/// has changed. The volume of solids is not looked at.
+#[must_use]
+pub fn check_faces(brep: &Brep, faces: &BTreeSet<FaceId>, tolerance: &dyn Fn(BodyId) -> f64) -> Vec<Finding> {
+    let survey = Survey::new(brep);
+    let mut findings = Vec::new();
+    for (id, body) in brep.bodies.iter() {
+        for &shell in &body.shells {
+            let some: Vec<FaceId> =
+                brep.shells[shell].faces.iter().copied().filter(|face| faces.contains(face)).collect();
+            if some.is_empty() {
+                continue;
+            }
+            let limits = Limits::new(tolerance(id), survey.extent(some.iter().copied()));
+            edge_use::check(brep, shell, &mut findings);
+            vertex_off_edge::check(&survey, &some, &limits, &mut findings);
+            for &face in &some {
+                check_face(&survey, face, &limits, &mut findings);
+            }
+            degenerate_edge::check(&survey, &some, limits.tolerance, &mut findings);
         }
     }
     findings
 }
 
-/// Checks one face: its loops, and the edges on its surface.
-pub fn check_face(brep: &Brep, face: FaceId, tolerance: f64, findings: &mut Vec<Finding>) {
+/// Checks one face: its loops, and the edges on its surface. Gives the loops.
+fn check_face(
+    survey: &Survey<'_>,
+    face: FaceId,
+    limits: &Limits,
+    findings: &mut Vec<Finding>,
+) -> Vec<ParameterLoop> {
+    let (brep, tolerance) = (survey.brep, limits.tolerance);
     open_loop::check(brep, face, tolerance, findings);
-    pcurve_off_edge::check(brep, face, tolerance, findings);
-    let loops: Vec<ParameterLoop> =
-        parameter_loops(brep, face, &LoopSampling::of_tolerance(tolerance)).unwrap_or_default();
-    edge_off_surface::check(face, &loops, tolerance, findings);
+    pcurve_off_edge::check(survey, face, limits, findings);
+    let sampling = LoopSampling::of_tolerance(tolerance);
+    let loops = parameter_loops_with(brep, face, &sampling, &|edge| survey.points(edge)).unwrap_or_default();
+    edge_off_surface::check(face, &loops, limits, findings);
     orientation::check(brep, face, &loops, findings);
+    degenerate_edge::gaps(survey, face, limits, findings);
+    crossing::check(survey, face, &loops, limits, findings);
+    inside_out::check_face(brep, face, &loops, tolerance, findings);
+    loops
 }

@@ -1,7 +1,10 @@
 //! Fact: a pcurve, taken through its surface, lies on its edge's curve.
 
 use super::Finding;
-use crate::brep::{Brep, CoedgeId, FaceId, edge_range};
+use super::limits::Limits;
+use super::survey::Survey;
+use crate::brep::{CoedgeId, FaceId};
+use crate::diagnostic::Severity;
 use crate::math::Point3;
 
 /// A pcurve does not lie on its edge.
@@ -11,6 +14,8 @@ pub struct PcurveOffEdge {
     pub coedge: CoedgeId,
     /// Greatest distance of the pcurve's sampled points from the edge's curve, in file units.
     pub distance: f64,
+    /// A warning where other programs take it for the edge's own tolerance.
+    pub severity: Severity,
     /// The pcurve's point at that distance.
     pub place: Point3<f64>,
 }
@@ -26,12 +31,13 @@ const SAME_DOMAIN: f64 = 1e-6;
 ///
 /// The standard asks that pcurve and curve be the same points, not that they share the parameter; a pcurve
 /// over another interval is compared end to end.
-pub(super) fn check(brep: &Brep, face: FaceId, tolerance: f64, findings: &mut Vec<Finding>) {
+pub(super) fn check(survey: &Survey<'_>, face: FaceId, limits: &Limits, findings: &mut Vec<Finding>) {
+    let brep = survey.brep;
     let Some(surface) = brep.surface_of(face).read() else { return };
     for coedge in brep.coedges_of(face) {
         let of = &brep.coedges[coedge];
         let (Some(pcurve), Some(curve), Some(range)) =
-            (&of.pcurve, brep.curve_of(of.edge).read(), edge_range(brep, of.edge))
+            (&of.pcurve, brep.curve_of(of.edge).read(), survey.range(of.edge))
         else {
             continue;
         };
@@ -47,14 +53,15 @@ pub(super) fn check(brep: &Brep, face: FaceId, tolerance: f64, findings: &mut Ve
             let point = surface.point(p.x, p.y);
             let same = (curve.point_wrapped(t) - point).norm();
             let nearest = || (curve.point_wrapped(curve.parameter_of(&point, Some(t))) - point).norm();
-            let distance = if same <= tolerance { same } else { same.min(nearest()) };
+            let distance = if same <= limits.tolerance { same } else { same.min(nearest()) };
             if distance > worst.0 {
                 worst = (distance, point);
             }
         }
-        if worst.0 > tolerance {
+        if worst.0 > limits.tolerance {
             let (distance, place) = worst;
-            findings.push(Finding::PcurveOffEdge(PcurveOffEdge { coedge, distance, place }));
+            let severity = limits.severity(distance);
+            findings.push(Finding::PcurveOffEdge(PcurveOffEdge { coedge, distance, severity, place }));
         }
     }
 }

@@ -248,11 +248,15 @@ impl<'a, 'm> Links<'a, 'm> {
         if view.is(Entity::CartesianPoint) {
             let coordinates = view.list("coordinates").into_iter().flatten();
             let numbers = coordinates.filter_map(|number| number.as_f64());
-            return numbers.take(3).map(|value| Measure { value, unit: String::new() }).collect();
+            let name = view.text("name").into_owned();
+            let point = |value| Measure { name: name.clone(), value, metres: None, unit: String::new() };
+            return numbers.take(3).map(point).collect();
         }
         let Ok(value) = view.real("value_component") else { return Vec::new() };
-        let unit = view.reference("unit_component").ok().map(|unit| units::name_of(self.scope, unit));
-        vec![Measure { value, unit: unit.unwrap_or_default() }]
+        let unit = view.reference("unit_component").ok();
+        let metres = unit.and_then(|unit| units::metres_of(self.scope, unit));
+        let unit = unit.map(|unit| units::name_of(self.scope, unit)).unwrap_or_default();
+        vec![Measure { name: view.text("name").into_owned(), value, metres, unit }]
     }
 }
 

@@ -147,6 +147,26 @@ pub(super) fn name_of(scope: Scope<'_>, unit: InstanceName) -> String {
     }
 }
 
+/// Metres, or square or cubic metres, of a unit of length or one derived from such a unit alone; `None` for any other.
+pub(super) fn metres_of(scope: Scope<'_>, unit: InstanceName) -> Option<f64> {
+    if let Ok(Unit::Length(length)) = unit_of(scope, unit) {
+        return Some(length.metres);
+    }
+    let record = |name: InstanceName, keyword: &'static [u8]| {
+        scope.instance(name).ok()?.records().find(|record| record.is(keyword))
+    };
+    let elements = record(unit, b"DERIVED_UNIT")?.parameters().next()?;
+    let mut metres = 1.0;
+    for element in elements.as_list()?.take(MAX_NESTED_UNITS) {
+        let mut parts = record(element.as_reference()?, b"DERIVED_UNIT_ELEMENT")?.parameters();
+        let base = parts.next()?.as_reference()?;
+        let power = parts.next()?.as_f64()?;
+        let Ok(Unit::Length(length)) = unit_of(scope, base) else { return None };
+        metres *= length.metres.powf(power);
+    }
+    Some(metres)
+}
+
 fn unit_of(scope: Scope<'_>, name: InstanceName) -> Result<Unit, ReadError> {
     let view = scope.view_of(name, Entity::NamedUnit)?;
     let is_length = view.is(Entity::LengthUnit);

@@ -1,0 +1,58 @@
+//! Adaptive quadrature of many integrands at once along a path.
+
+use super::moments::Sums;
+use crate::math::quadrature::KRONROD_7;
+
+/// Halvings of one interval at most.
+const MAX_DEPTH: u32 = 12;
+/// Intervals between two breaks at most: where projections jump, no number of them helps.
+const MAX_INTERVALS: usize = 96;
+
+/// What counts as exact.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Accuracy {
+    /// Size of the piece.
+    pub(super) size: f64,
+    /// Greatest distance of the piece from the reference.
+    pub(super) reach: f64,
+    /// Error of one interval, relative to what these make.
+    pub(super) target: f64,
+}
+
+/// Integral and error of `value` over an interval.
+pub(super) fn integrate(
+    value: &dyn Fn(f64) -> Sums,
+    from: f64,
+    to: f64,
+    accuracy: &Accuracy,
+) -> (Sums, Sums) {
+    let (mut sum, mut errors) = (Sums::ZERO, Sums::ZERO);
+    let mut open = vec![(from, to, 0)];
+    let mut count = 0;
+    while let Some((from, to, depth)) = open.pop() {
+        let (fine, error) = once(value, from, to);
+        count += 1;
+        let good = error.relative(accuracy.size, accuracy.reach) <= accuracy.target;
+        if good || depth == MAX_DEPTH || count > MAX_INTERVALS {
+            sum += fine;
+            errors += error;
+        } else {
+            let middle = 0.5 * (from + to);
+            open.push((middle, to, depth + 1));
+            open.push((from, middle, depth + 1));
+        }
+    }
+    (sum, errors)
+}
+
+fn once(value: &dyn Fn(f64) -> Sums, from: f64, to: f64) -> (Sums, Sums) {
+    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+    let (mut fine, mut coarse, mut size) = (Sums::ZERO, Sums::ZERO, Sums::ZERO);
+    for &(x, kronrod, gauss) in &KRONROD_7 {
+        let at = value(middle + half * x);
+        fine += at * (kronrod * half);
+        coarse += at * (gauss * half);
+        size += at.abs() * (kronrod * half.abs());
+    }
+    (fine, fine.error_against(&coarse, &size))
+}
