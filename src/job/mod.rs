@@ -10,6 +10,7 @@ mod detail_operate;
 pub mod failure;
 pub mod feature_file;
 pub mod file;
+pub mod finding;
 mod json;
 pub mod judge;
 pub mod measure;

@@ -3,7 +3,7 @@
 //! Only of statements about a body, or about a product that has shapes of its own and no components. What other
 //! programs measured with is not known: a difference counts when no rounding or gap explains it.
 
-use super::own_check::OwnFinding;
+use super::finding::OwnFinding;
 use crate::brep::mass_properties::{MassProperties, Quadrature, middle, of_body};
 use crate::brep::{BodyId, BodyKind};
 use crate::diagnostic::Severity;

@@ -9,7 +9,7 @@
 
 use super::error::TransferError;
 use super::measure::extent;
-use super::plan::{Measures, Params, Plan, SMOOTH, completed, in_file, notes};
+use super::params::{Direction, FaceTarget, Measures, Params, Plan, SMOOTH, completed, in_file, notes};
 use super::prepare::Prepared;
 use super::settings::{Frame, Settings};
 use super::spline::Spline;
@@ -23,26 +23,6 @@ use crate::ops::OperationError;
 use crate::ops::net::Mask;
 use crate::ops::net::acting::{acting_on, closed_directions};
 use crate::ops::net::layout::{Layout, face_name, lay_out_on};
-
-/// A face that detail is laid over.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FaceTarget {
-    /// The face.
-    pub face: FaceId,
-    /// The direction in which the source runs.
-    pub direction: Direction,
-    /// Part of the other parameter that gets detail: from 0 to 1.
-    pub across: [f64; 2],
-}
-
-/// A direction on a surface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Direction {
-    /// Along `u`.
-    U,
-    /// Along `v`.
-    V,
-}
 
 /// Control points over which detail rises beside one that stays.
 const RISE: usize = 3;

@@ -12,9 +12,11 @@
 
 mod embed;
 pub mod error;
-pub mod face;
+mod face;
 mod frames;
 mod measure;
+mod on_curve;
+pub mod params;
 pub mod plan;
 pub mod prepare;
 pub mod settings;
@@ -23,8 +25,8 @@ mod transfer;
 mod weighted;
 
 pub use error::TransferError;
-pub use face::{Direction, FaceTarget};
-pub use plan::{Params, Plan, Target, plan};
+pub use params::{Direction, FaceTarget, Params, Plan, Target};
+pub use plan::plan;
 pub use prepare::{Prepared, prepare};
 pub use settings::{Existing, Frame, LevelChoice, Scale, Settings};
 pub use spline::Spline;
