@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::job::detail_file::CurveSelector;
 use crate::job::file::ValidatorName;
 use crate::job::paste_file::RegionSetting;
 use crate::job::selector::Selector;
@@ -37,7 +38,7 @@ pub enum Command {
     /// Keep features for pastes without their parts
     #[command(subcommand)]
     Feature(FeatureCommand),
-    /// Print the JSON Schema of the job file, of the report or of a feature
+    /// Print the JSON Schema of the job file, the report, a feature or curve detail
     Schema {
         /// Which one
         of: SchemaOf,
@@ -133,6 +134,22 @@ pub struct ViewArguments {
 pub enum FeatureCommand {
     /// Take a feature off a face, and write it to a file of its own
     Export(ExportArguments),
+    /// Split a curve into its base and levels of detail, and write them to a file of their own
+    Detail(DetailArguments),
+}
+
+/// Arguments of `feature detail`.
+#[derive(Debug, Args)]
+pub struct DetailArguments {
+    /// Part to read
+    #[arg(value_name = "PART")]
+    pub part: PathBuf,
+    /// The curve: `#1042`, or a table as in a job file; left out, the only free one
+    #[arg(long, value_name = "SELECTOR")]
+    pub curve: Option<CurveSelector>,
+    /// File to write
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
 }
 
 /// Arguments of `feature export`.
@@ -175,4 +192,6 @@ pub enum SchemaOf {
     Report,
     /// A feature of a library
     Feature,
+    /// Curve detail of a library
+    Detail,
 }

@@ -78,7 +78,7 @@ fn body_line(body: &BodyMeasures) -> String {
     add("volume", body.volume);
     add("area", body.area);
     if let Some([x, y, z]) = body.centroid {
-        text += &format!(" centroid ({x}, {y}, {z})");
+        text += &format!(" centroid ({}, {}, {})", number(x), number(y), number(z));
     }
     text + &body.unknown.as_ref().map(|reason| format!(" not measured: {reason}")).unwrap_or_default()
 }

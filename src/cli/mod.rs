@@ -39,11 +39,13 @@ pub fn main() -> u8 {
         Command::Check(arguments) => check::check(&arguments, &mut printer),
         Command::View(arguments) => view::view(&arguments, &mut printer),
         Command::Feature(FeatureCommand::Export(arguments)) => feature::export(&arguments, &mut printer),
+        Command::Feature(FeatureCommand::Detail(arguments)) => feature::detail(&arguments, &mut printer),
         Command::Schema { of } => {
             printer.data(&match of {
                 SchemaOf::Job => crate::job::schema::job(),
                 SchemaOf::Report => crate::job::schema::report(),
                 SchemaOf::Feature => crate::job::schema::feature(),
+                SchemaOf::Detail => crate::job::schema::detail(),
             });
             exit_code::DONE
         }

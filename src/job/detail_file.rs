@@ -62,6 +62,11 @@ impl DetailTransfer {
         if self.frame == FrameWord::Global && self.roll != 0.0 {
             return Err("`roll` turns about the target, which needs `frame = \"local\"`".to_owned());
         }
+        if self.source.detail.is_some() && (self.source.file.is_some() || self.source.curve.is_some()) {
+            return Err(
+                "`detail` in `source` stands for a curve; `file` and `curve` do not go with it".to_owned()
+            );
+        }
         let target = &self.target;
         if target.curve.is_some() && target.face.is_some() {
             return Err("`target` has both a `curve` and a `face`; expected one of them".to_owned());
@@ -99,6 +104,9 @@ pub struct DetailSource {
     pub file: Option<String>,
     /// The source curve, free or an edge's. Left out: the only free curve.
     pub curve: Option<CurveSelector>,
+    /// Detail of a library, relative to the job file: written by `resurf feature detail`, it needs no part. No other
+    /// key goes with it.
+    pub detail: Option<String>,
 }
 
 /// Where detail goes.
@@ -141,6 +149,19 @@ pub enum CurveSelector {
 struct CurveConditions {
     /// Name of the free curve, or else of the set that holds it, as a glob: `"RIM*"`.
     name: NamePattern,
+}
+
+impl std::str::FromStr for CurveSelector {
+    type Err = String;
+
+    /// A selector as typed on a command line: `#1042`, or a table as in a job file.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let text = text.trim();
+        if text.starts_with('#') {
+            return instance(text).map(Self::Instance);
+        }
+        super::read::read_value(text).map_err(|e| e.to_string())
+    }
 }
 
 impl<'de> Deserialize<'de> for CurveSelector {
@@ -232,6 +253,9 @@ impl JsonSchema for LevelsSetting {
     }
 }
 
+/// Greatest gain and scale: beyond it detail has lost its digits.
+const GREATEST_FACTOR: f64 = 1e6;
+
 /// Gains: one for all levels, or one for each.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GainSetting(pub Vec<f64>);
@@ -262,10 +286,11 @@ impl<'de> Deserialize<'de> for GainSetting {
             }
         }
         fn checked(gains: Vec<f64>) -> Result<GainSetting, String> {
-            if !gains.is_empty() && gains.iter().all(|gain| gain.is_finite()) {
+            if !gains.is_empty() && gains.iter().all(|gain| gain.abs() <= GREATEST_FACTOR) {
                 return Ok(GainSetting(gains));
             }
-            Err(format!("{gains:?} are no gains; expected finite numbers"))
+            let gains: Vec<String> = gains.iter().map(|gain| format!("{gain:e}")).collect();
+            Err(format!("[{}] are no gains; expected numbers up to {GREATEST_FACTOR}", gains.join(", ")))
         }
         deserializer.deserialize_any(GainVisitor)
     }
@@ -307,10 +332,12 @@ impl<'de> Deserialize<'de> for DetailScale {
                 self.visit_f64(value as f64)
             }
             fn visit_f64<E: de::Error>(self, value: f64) -> Result<DetailScale, E> {
-                if value.is_finite() {
+                if value.abs() <= GREATEST_FACTOR {
                     return Ok(DetailScale::Factor(value));
                 }
-                Err(E::custom(format!("{value} is not a factor")))
+                Err(E::custom(format!(
+                    "{value:e} is not a factor; expected a number up to {GREATEST_FACTOR}"
+                )))
             }
             fn visit_str<E: de::Error>(self, text: &str) -> Result<DetailScale, E> {
                 if text == "arc_length" {

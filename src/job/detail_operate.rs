@@ -5,12 +5,14 @@ use super::detail_file::{
     CurveSelector, DetailScale, DetailTransfer, DirectionWord, EndsWord, FrameWord, LevelsSetting,
     OwnDetailWord,
 };
+use super::detail_library::DetailFile;
 use super::operate::{OperateError, other_file};
 use super::selector::Selector;
 use super::{select, select_curve};
 use crate::model::Model;
 use crate::ops::detail_transfer::{
-    Direction, Existing, FaceTarget, Frame, LevelChoice, Params, Plan, Scale, Settings, Target, plan,
+    Direction, Existing, FaceTarget, Frame, LevelChoice, Params, Plan, Scale, Settings, Source, Spline,
+    Target, plan,
 };
 use crate::units::LengthUnit;
 
@@ -21,15 +23,23 @@ pub(super) fn planned(model: &Model, words: &DetailTransfer) -> Result<Plan, Ope
         Some(face) => Target::Face(face_target(model, face, words)?),
         None => Target::Curve(select(model, words.target.curve.as_ref()).map_err(OperateError::TargetCurve)?),
     };
+    let kept = words.source.detail.as_deref().map(saved).transpose()?;
     let other = words.source.file.as_deref().map(other_file).transpose()?;
     let from = other.as_ref().unwrap_or(model);
-    let source = select(from, words.source.curve.as_ref()).map_err(OperateError::SourceCurve)?;
+    let source = match &kept {
+        Some((_, spline)) => Source::Spline(spline, words.source.detail.as_deref().unwrap_or_default()),
+        None => {
+            let curve = select(from, words.source.curve.as_ref()).map_err(OperateError::SourceCurve)?;
+            Source::Curve(from, curve)
+        }
+    };
     let unit = match &target {
         Target::Face(target) => Some(&model.context_of(target.face).length),
         Target::Curve(_) => unit_of(model),
     };
-    let source_unit = match (unit, unit_of(from)) {
-        (Some(target), Some(source)) => source.metres / target.metres,
+    let metres = kept.as_ref().map(|(file, _)| file.metres_per_unit);
+    let source_unit = match (unit, metres.or_else(|| unit_of(from).map(|unit| unit.metres))) {
+        (Some(target), Some(metres)) => metres / target.metres,
         _ => 1.0,
     };
     let tolerance = match (words.tolerance, unit) {
@@ -37,7 +47,6 @@ pub(super) fn planned(model: &Model, words: &DetailTransfer) -> Result<Plan, Ope
         _ => None,
     };
     let params = Params {
-        source_model: from,
         source,
         source_unit,
         target,
@@ -52,6 +61,15 @@ pub(super) fn planned(model: &Model, words: &DetailTransfer) -> Result<Plan, Ope
         settings: settings(words),
     };
     Ok(plan(model, &params)?)
+}
+
+/// Detail of a library.
+fn saved(file: &str) -> Result<(DetailFile, Spline), OperateError> {
+    let fault = |reason: String| OperateError::DetailFile { file: file.to_owned(), reason };
+    let text = std::fs::read_to_string(file).map_err(|error| fault(error.to_string()))?;
+    let kept = DetailFile::read(&text).map_err(fault)?;
+    let spline = kept.spline().map_err(fault)?;
+    Ok((kept, spline))
 }
 
 fn face_target(model: &Model, face: &Selector, words: &DetailTransfer) -> Result<FaceTarget, OperateError> {

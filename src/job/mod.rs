@@ -6,6 +6,7 @@
 mod clock;
 pub mod contents;
 pub mod detail_file;
+pub mod detail_library;
 mod detail_operate;
 pub mod failure;
 pub mod feature_file;

@@ -52,11 +52,27 @@ pub enum OperateError {
         /// Why.
         reason: String,
     },
+    /// The file of a library's detail cannot be used.
+    #[error("source.detail: {file}: {reason}")]
+    DetailFile {
+        /// The file.
+        file: String,
+        /// Why.
+        reason: String,
+    },
     /// No curve has the name.
     #[error("source.region.curve: #{name} is no curve that was read")]
     NoCurve {
         /// The name.
         name: u64,
+    },
+    /// A curve has no detail to keep.
+    #[error("{curve}: {reason}")]
+    NoDetail {
+        /// The curve.
+        curve: String,
+        /// Why.
+        reason: String,
     },
     /// A hold does not fit the part.
     #[error("hold: {0}")]
@@ -85,10 +101,12 @@ impl OperateError {
             | Self::TargetCurve(_)
             | Self::SourceCurve(_) => "select.no-match",
             Self::SourceFile { .. } => "job.source-file",
+            Self::DetailFile { .. } => "job.detail-file",
             Self::FeatureFile { .. } => "job.feature-file",
             Self::NoCurve { .. } => "paste.no-curve",
             Self::Hold(_) => "select.no-hold",
             Self::Operation(error) => error.code(),
+            Self::NoDetail { .. } => "detail.no-levels",
             Self::NoFace => "select.no-face",
         }
     }

@@ -91,7 +91,10 @@ pub fn resolve(job: &mut Job, folder: &Path) -> Result<(), PlanError> {
     for operation in &mut job.operation {
         let file = match operation {
             Operation::ConstrainedScale(_) | Operation::Simplify(_) => None,
-            Operation::DetailTransfer(transfer) => transfer.source.file.as_mut(),
+            Operation::DetailTransfer(transfer) => {
+                let source = &mut transfer.source;
+                source.file.as_mut().or(source.detail.as_mut())
+            }
             Operation::FeaturePaste(paste) => {
                 let source = &mut paste.source;
                 source.file.as_mut().or(source.feature.as_mut())

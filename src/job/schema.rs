@@ -1,5 +1,6 @@
 //! JSON Schema of the job file, of the report and of a feature, generated from their types.
 
+use super::detail_library::DetailFile;
 use super::feature_file::FeatureFile;
 use super::file::Job;
 use super::report::Report;
@@ -20,6 +21,12 @@ pub fn report() -> String {
 #[must_use]
 pub fn feature() -> String {
     text(&schemars::schema_for!(FeatureFile))
+}
+
+/// The schema of the detail of a library, with a line feed behind it.
+#[must_use]
+pub fn detail() -> String {
+    text(&schemars::schema_for!(DetailFile))
 }
 
 fn text(schema: &schemars::Schema) -> String {

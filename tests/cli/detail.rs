@@ -117,6 +117,8 @@ fn impossible_words_are_placed() {
     assert_snapshot!(wires(&format!("{SOURCE}levels = [1, 0]")).run(&["run", "job.toml"]));
     assert_snapshot!(wires(&format!("{SOURCE}interval = [0.8, 0.2]")).run(&["run", "job.toml"]));
     assert_snapshot!(wires(&format!("{SOURCE}levels = [9]")).run(&["run", "job.toml"]));
+    assert_snapshot!(wires(&format!("{SOURCE}gain = 1e300")).run(&["run", "job.toml"]));
+    assert_snapshot!(wires(&format!("{SOURCE}scale = -1e9")).run(&["run", "job.toml"]));
 }
 
 /// The B-spline surface of the named face.
@@ -270,4 +272,64 @@ fn faces_of_real_solids_get_detail() {
             (&part["before"]["counts"]["faces"], &part["before"]["counts"]["solids"],)
         );
     }
+}
+
+const KEPT: &str = "source = { detail = \"ripples.detail.json\" }\n";
+
+/// The wires, and the detail of a source in a file of its own.
+fn kept() -> (Fixture, String) {
+    let fixture = wires(SOURCE);
+    let said = fixture.run(&[
+        "feature",
+        "detail",
+        "sources.step",
+        "--curve",
+        "{ name = \"SOURCE_4\" }",
+        "-o",
+        "ripples.detail.json",
+    ]);
+    assert!(said.starts_with("exit code: 0"), "{said}");
+    let text = std::fs::read_to_string(fixture.path("ripples.detail.json")).expect("a file");
+    (fixture, text)
+}
+
+#[test]
+fn detail_from_the_library_is_that_of_the_curve() {
+    let (fixture, _) = kept();
+    assert!(fixture.run(&["run", "job.toml"]).starts_with("exit code: 0"));
+    let wanted = sampled(&fixture, "out/arch.step");
+    let fixture = fixture.file("kept.toml", job("arch.step", KEPT));
+    std::fs::remove_file(fixture.path("sources.step")).expect("the part is not needed any more");
+    let said = fixture.run(&["run", "kept.toml"]);
+    assert!(said.starts_with("exit code: 0"), "{said}");
+    for (kept, wanted) in sampled(&fixture, "out/arch.step").into_iter().zip(wanted) {
+        assert!((kept - wanted).norm() <= 1e-12 * 120.0, "{kept} against {wanted}");
+    }
+}
+
+#[test]
+fn detail_of_a_library_that_does_not_hold_together_is_refused() {
+    let (fixture, text) = kept();
+    let fixture = fixture.file("kept.toml", job("arch.step", KEPT));
+    let value: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let refused = |change: &dyn Fn(&mut serde_json::Value)| {
+        let mut other = value.clone();
+        change(&mut other);
+        std::fs::write(fixture.path("ripples.detail.json"), other.to_string()).expect("written");
+        let said = fixture.run(&["run", "kept.toml"]);
+        assert!(!fixture.path("out/arch.step").exists());
+        said
+    };
+    let all = [
+        refused(&|file| file["version"] = json!(2)),
+        refused(&|file| file["metres_per_unit"] = json!(-1)),
+        refused(&|file| file["knots"][9] = json!(-7)),
+        refused(&|file| drop(file["levels"].as_array_mut().expect("a list").pop())),
+        refused(&|file| drop(file["levels"][0].as_array_mut().expect("a list").pop())),
+        refused(&|file| file["levels"].as_array_mut().expect("a list").push(json!([]))),
+        refused(&|file| file["format"] = json!("resurf-feature")),
+    ];
+    assert_snapshot!(all.join("\n"));
+    std::fs::write(fixture.path("ripples.detail.json"), &text[..text.len() / 2]).expect("written");
+    assert!(fixture.run(&["run", "kept.toml"]).contains("source.detail"));
 }

@@ -15,7 +15,7 @@ pub mod error;
 mod face;
 mod frames;
 mod measure;
-mod on_curve;
+pub mod on_curve;
 pub mod params;
 pub mod plan;
 pub mod prepare;
@@ -25,7 +25,7 @@ mod transfer;
 mod weighted;
 
 pub use error::TransferError;
-pub use params::{Direction, FaceTarget, Params, Plan, Target};
+pub use params::{Direction, FaceTarget, Params, Plan, Source, Target};
 pub use plan::plan;
 pub use prepare::{Prepared, prepare};
 pub use settings::{Existing, Frame, LevelChoice, Scale, Settings};

@@ -4,11 +4,13 @@ use super::error::TransferError;
 use super::measure::extent;
 use super::params::{Measures, Params, Plan, TOLERANCE, completed, in_file, notes};
 use super::prepare::{Prepared, prepare};
+use super::spline::Spline;
 use super::transfer::transfer;
 use super::weighted;
 use crate::brep::CurveId;
 use crate::geometry::{Carried, Curve};
 use crate::model::{ChangeSet, Model};
+use crate::ops::OperationError;
 
 /// Plans a transfer onto a curve that belongs to no face.
 pub(super) fn plan(
@@ -80,6 +82,15 @@ fn refuse_edges(model: &Model, curve: CurveId) -> Result<(), TransferError> {
     let names: Vec<String> = faces.iter().map(|&face| model.origins.faces[face].to_string()).collect();
     let faces = if names.is_empty() { "no face".to_owned() } else { names.join(", ") };
     Err(TransferError::EdgeOfFaces { curve: model.origins.curves[curve].to_string(), faces })
+}
+
+/// The spline that stands for a curve of a model, within a millionth of its size.
+///
+/// # Errors
+/// [`OperationError::Transfer`].
+pub fn spline_of(model: &Model, curve: CurveId) -> Result<Spline, OperationError> {
+    let name = name(model, curve);
+    Ok(prepared(read(model, curve, &name)?, &name, None)?.spline)
 }
 
 /// Name of a curve in messages: its origin.

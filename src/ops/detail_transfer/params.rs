@@ -12,10 +12,8 @@ use crate::model::{ChangeSet, Model};
 /// Parameters of the operation on a model. Lengths are in units of the target's file.
 #[derive(Debug, Clone)]
 pub struct Params<'a> {
-    /// Model of the source curve.
-    pub source_model: &'a Model,
-    /// The curve that gives detail.
-    pub source: CurveId,
+    /// What gives detail.
+    pub source: Source<'a>,
     /// Length of the source's unit in the target's.
     pub source_unit: f64,
     /// What is changed.
@@ -29,6 +27,15 @@ pub struct Params<'a> {
     pub ends: Option<usize>,
     /// The rest; its `ends` and `interval` are not looked at.
     pub settings: Settings,
+}
+
+/// What gives detail.
+#[derive(Debug, Clone, Copy)]
+pub enum Source<'a> {
+    /// A curve of a model.
+    Curve(&'a Model, CurveId),
+    /// A spline of a library, and its name in messages.
+    Spline(&'a Spline, &'a str),
 }
 
 /// What gets detail.
