@@ -14,8 +14,9 @@ use super::select_curve;
 use crate::geometry::bspline_wavelet::{Decomposition, decompose};
 use crate::geometry::nurbs::KnotVector;
 use crate::model::Model;
-use crate::ops::detail_transfer::Spline;
+use crate::ops::OperationError;
 use crate::ops::detail_transfer::on_curve::spline_of;
+use crate::ops::detail_transfer::{Spline, TransferError};
 
 /// The detail of one curve.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -61,20 +62,20 @@ const ENDS: usize = 1;
 
 impl DetailFile {
     /// From a spline; `origin` is for people.
-    fn of(spline: &Spline, metres_per_unit: f64, origin: String) -> Result<Self, OperateError> {
-        let ends = ENDS.min(spline.knots.degree());
+    fn of(spline: &Spline, metres_per_unit: f64, origin: String) -> Result<Self, TransferError> {
+        let degree = spline.knots.degree();
+        let ends = ENDS.min(degree);
         let split = decompose(&spline.knots, &spline.points, usize::MAX, ends)
-            .map_err(|error| OperateError::NoDetail { curve: origin.clone(), reason: error.to_string() })?;
+            .map_err(|error| TransferError::Wavelets { curve: origin.clone(), error })?;
         if split.levels.is_empty() {
-            let reason = "its knots leave none to remove, so there is no detail".to_owned();
-            return Err(OperateError::NoDetail { curve: origin, reason });
+            return Err(TransferError::NoLevels { curve: origin, controls: spline.points.len(), degree });
         }
         Ok(Self {
             format: Format::Detail,
             version: VERSION,
             origin,
             metres_per_unit,
-            degree: spline.knots.degree(),
+            degree,
             ends,
             knots: spline.knots.knots().to_vec(),
             base_knots: split.base_knots.knots().to_vec(),
@@ -143,5 +144,6 @@ pub fn export(model: &Model, curve: Option<&CurveSelector>, file: &str) -> Resul
     let curve = select_curve::one(model, curve).map_err(OperateError::SourceCurve)?;
     let spline = spline_of(model, curve)?;
     let metres = model.contexts.first().map_or(1.0, |context| context.length.metres);
-    DetailFile::of(&spline, metres, format!("{} of {file}", model.origins.curves[curve]))
+    let kept = DetailFile::of(&spline, metres, format!("{} of {file}", model.origins.curves[curve]));
+    Ok(kept.map_err(OperationError::from)?)
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::finding::tolerance;
 use crate::brep::mass_properties::{self, Quadrature};
 use crate::brep::{BodyId, BodyKind, FaceId};
 use crate::geometry::{Carried, Surface};
@@ -65,9 +66,6 @@ impl Figures {
     }
 }
 
-/// Distance below which points count as one in a file that does not say: a micrometre.
-const UNCERTAINTY_METRES: f64 = 1e-6;
-
 /// Mass properties of one body of density one, in its file units.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct BodyMeasures {
@@ -120,13 +118,6 @@ pub fn measure_bodies(model: &Model) -> Vec<BodyMeasures> {
     model.brep.bodies.ids().map(|body| measure_body(model, body)).collect()
 }
 
-/// Distance below which points of a body count as one, in its file units.
-fn uncertainty(model: &Model, body: BodyId) -> f64 {
-    let context = &model.contexts[model.body_context[body]];
-    let said = context.uncertainty.map(|tolerance| tolerance.0);
-    said.unwrap_or(UNCERTAINTY_METRES / context.length.metres)
-}
-
 fn measure_body(model: &Model, body: BodyId) -> BodyMeasures {
     let mut measures = BodyMeasures {
         id: model.origins.bodies[body].to_string(),
@@ -139,7 +130,7 @@ fn measure_body(model: &Model, body: BodyId) -> BodyMeasures {
         gap: None,
         unknown: None,
     };
-    match mass_properties::of_body(&model.brep, body, &Quadrature::exact(uncertainty(model, body))) {
+    match mass_properties::of_body(&model.brep, body, &Quadrature::exact(tolerance(model, body))) {
         Ok(found) => {
             let solid = model.brep.bodies[body].kind == BodyKind::Solid;
             let centroid = if solid { found.centroid() } else { found.area_centroid() };
@@ -162,7 +153,7 @@ fn measure_body(model: &Model, body: BodyId) -> BodyMeasures {
 pub fn measure_face(model: &Model, face: FaceId) -> Option<FaceMeasures> {
     let brep = &model.brep;
     let body = brep.shells[brep.faces[face].shell].body;
-    let quadrature = Quadrature::exact(uncertainty(model, body));
+    let quadrature = Quadrature::exact(tolerance(model, body));
     let found = mass_properties::of_face(brep, face, &quadrature, Point3::origin()).ok()?;
     Some(FaceMeasures {
         area: found.area(),

@@ -66,14 +66,6 @@ pub enum OperateError {
         /// The name.
         name: u64,
     },
-    /// A curve has no detail to keep.
-    #[error("{curve}: {reason}")]
-    NoDetail {
-        /// The curve.
-        curve: String,
-        /// Why.
-        reason: String,
-    },
     /// A hold does not fit the part.
     #[error("hold: {0}")]
     Hold(String),
@@ -106,7 +98,6 @@ impl OperateError {
             Self::NoCurve { .. } => "paste.no-curve",
             Self::Hold(_) => "select.no-hold",
             Self::Operation(error) => error.code(),
-            Self::NoDetail { .. } => "detail.no-levels",
             Self::NoFace => "select.no-face",
         }
     }

@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use super::file::Job;
 use super::node::{Entry, Node, NodeError, Value, decode};
-use super::selector::Selector;
 
 /// The two spellings of a job file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,27 +52,12 @@ pub fn read(text: &str, syntax: Syntax) -> Result<Job, JobFileError> {
     decode(&node).map_err(placed)
 }
 
-/// Reads one selector in the words of a TOML value.
-///
-/// # Errors
-/// As [`read`]; places count from the selector's start.
-pub fn read_selector(text: &str) -> Result<Selector, JobFileError> {
-    let text = format!("{SELECTOR_KEY}{text}");
-    let Value::Table(entries) = toml_node(&text)?.value else {
-        return Err(JobFileError::new(0..0, "expected a selector"));
-    };
-    let [entry] = entries.as_slice() else {
-        return Err(JobFileError::new(0..0, "expected one selector"));
-    };
-    decode(&entry.value).map_err(placed)
-}
-
-/// Reads one value in TOML's words, such as a region.
+/// Reads one value in TOML's words, such as a selector or a region.
 ///
 /// # Errors
 /// As [`read`]; places count from the value's start.
 pub fn read_value<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, JobFileError> {
-    let text = format!("{SELECTOR_KEY}{text}");
+    let text = format!("{KEY}{text}");
     let Value::Table(entries) = toml_node(&text)?.value else {
         return Err(JobFileError::new(0..0, "expected a value"));
     };
@@ -83,7 +67,8 @@ pub fn read_value<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, JobFi
     decode(&entry.value).map_err(placed)
 }
 
-const SELECTOR_KEY: &str = "face=";
+/// Makes a document of a value.
+const KEY: &str = "value=";
 
 fn placed(error: NodeError) -> JobFileError {
     let mut path = String::new();

@@ -155,7 +155,7 @@ impl std::str::FromStr for Selector {
         if text.starts_with('#') {
             return instance(text).map(Self::Instance);
         }
-        super::read::read_selector(text).map_err(|e| e.to_string())
+        super::read::read_value(text).map_err(|e| e.to_string())
     }
 }
 

@@ -223,19 +223,24 @@ fn faces_that_cannot_take_detail_are_refused() {
     assert_snapshot!(over("vase/vase.step", &across).run(&["run", "job.toml"]));
 }
 
+/// The report of a job that others judge; `None` where they are missing and not required.
+fn judged(fixture: &Fixture) -> Option<serde_json::Value> {
+    let said = fixture.run(&["run", "job.toml", "--report", "report.json"]);
+    if said.starts_with("exit code: 5") && std::env::var_os("RESURF_REQUIRE_VALIDATORS").is_none() {
+        return None;
+    }
+    assert!(said.starts_with("exit code: 0"), "{said}");
+    let report = std::fs::read_to_string(fixture.path("report.json")).expect("a report");
+    Some(serde_json::from_str(&report).expect("JSON"))
+}
+
 #[test]
 fn the_rim_of_the_sample_is_accepted() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/samples/vase/rim.toml");
     let text = std::fs::read_to_string(folder).expect("a sample").replace("../curves/", "");
     let fixture =
         Fixture::new().sample("vase/vase.step").sample("curves/sources.step").file("job.toml", text);
-    let said = fixture.run(&["run", "job.toml", "--report", "report.json"]);
-    if said.starts_with("exit code: 5") && std::env::var_os("RESURF_REQUIRE_VALIDATORS").is_none() {
-        return;
-    }
-    assert!(said.starts_with("exit code: 0"), "{said}");
-    let report = std::fs::read_to_string(fixture.path("report.json")).expect("a report");
-    let report: serde_json::Value = serde_json::from_str(&report).expect("JSON");
+    let Some(report) = judged(&fixture) else { return };
     let verdict = &report["parts"][0]["validators"][0];
     assert_eq!((&verdict["accepted"], &verdict["figures"]["faces"]), (&json!(true), &json!(1)));
 }
@@ -257,13 +262,7 @@ fn faces_of_real_solids_get_detail() {
         );
         let fixture = Fixture::new().sample("curves/sources.step").file("in.stp", input);
         let fixture = fixture.file("job.toml", job("in.stp", &words));
-        let said = fixture.run(&["run", "job.toml", "--report", "report.json"]);
-        if said.starts_with("exit code: 5") && std::env::var_os("RESURF_REQUIRE_VALIDATORS").is_none() {
-            return;
-        }
-        assert!(said.starts_with("exit code: 0"), "{part}: {said}");
-        let report = std::fs::read_to_string(fixture.path("report.json")).expect("a report");
-        let report: serde_json::Value = serde_json::from_str(&report).expect("JSON");
+        let Some(report) = judged(&fixture) else { return };
         let part = &report["parts"][0];
         assert_eq!(part["operations"][0]["changed"]["surfaces"], 1, "{part}");
         let verdict = &part["validators"][0]["figures"];
@@ -332,4 +331,16 @@ fn detail_of_a_library_that_does_not_hold_together_is_refused() {
     assert_snapshot!(all.join("\n"));
     std::fs::write(fixture.path("ripples.detail.json"), &text[..text.len() / 2]).expect("written");
     assert!(fixture.run(&["run", "kept.toml"]).contains("source.detail"));
+}
+
+#[test]
+fn a_curve_without_detail_is_not_kept() {
+    let fixture = wires(SOURCE);
+    let text = std::fs::read_to_string(fixture.path("arch.step")).expect("a sample");
+    let (before, rest) = text.split_once("#20=").expect("the curve");
+    let (_, rest) = rest.split_once(';').expect("its end");
+    let fixture = fixture.file("straight.step", format!("{before}#20=POLYLINE('',(#9,#19));{rest}"));
+    let said = fixture.run(&["feature", "detail", "straight.step", "-o", "straight.detail.json"]);
+    assert!(said.starts_with("exit code: 4\n") && said.contains("detail.no-levels"), "{said}");
+    assert!(!fixture.path("straight.detail.json").exists());
 }

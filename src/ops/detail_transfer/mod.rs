@@ -6,7 +6,7 @@
 //!
 //! [`transfer`] takes and gives splines; [`plan()`] curves of a model, and gives a change set. Neither knows files.
 //!
-//! What it does not do: curves that are edges of faces, unless with the face; curves in the plane; periodic decompositions.
+//! What it does not do: curves that are edges of faces, curves in the plane, periodic decompositions.
 //!
 //! Source: transfer of multiresolution curve details with the corrections of `docs/decisions/detail-transfer.md`.
 
