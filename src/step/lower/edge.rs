@@ -11,12 +11,21 @@ use crate::model::change_set::{EdgeCurve, EdgeRef, NewBound, NewEdge, NewEdgeId,
 /// A face that gets a new bound.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ground<'a> {
+    /// Which face it is.
+    pub(super) owner: Owner,
     /// Record of its surface.
     pub(super) surface: InstanceName,
     /// A face of the model in whose context it is written.
     pub(super) face: FaceId,
     /// Its surface; `None` when it was not read.
     pub(super) geometry: Option<&'a crate::geometry::Surface>,
+}
+
+/// A face of the model by its id, or a new one by its place in the change set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Owner {
+    Old(FaceId),
+    New(usize),
 }
 
 /// The use of a new edge that has a curve in the parameters of a face.
@@ -102,7 +111,7 @@ impl Lowering<'_> {
         };
         let old = super::instance_name(self.model.origins.faces[first.ground.face])?;
         let space = self.append_curve(old, curve, &Inherited::nothing())?;
-        let seam = matches!(uses, [a, b] if a.ground.surface == b.ground.surface);
+        let seam = matches!(uses, [a, b] if a.ground.owner == b.ground.owner);
         let mut order: Vec<&PcurveUse<'_>> = uses.iter().collect();
         if seam {
             // The first belongs to the use along the edge (ISO 10303-42, `seam_curve`).

@@ -5,7 +5,7 @@ use super::super::entity::Entity;
 use super::super::exchange_structure::{Instance, InstanceName};
 use super::super::view::EntityView;
 use super::compose::{Body, Inherited, Value, verbatim};
-use super::edge::{Ground, PcurveUses, gather};
+use super::edge::{Ground, Owner, PcurveUses, gather};
 use super::list::places;
 use super::{LowerError, Lowering};
 use crate::brep::{Arena, FaceId};
@@ -29,8 +29,9 @@ impl<'a> Lowering<'a> {
         for (&face, bounds) in &changes.new_bounds {
             gather(&mut uses, self.ground(face, changes)?, bounds);
         }
-        for (face, &surface) in changes.new_faces.iter().zip(&surfaces) {
-            let ground = Ground { surface, face: face.beside, geometry: Some(&face.surface) };
+        for (k, (face, &surface)) in changes.new_faces.iter().zip(&surfaces).enumerate() {
+            let owner = Owner::New(k);
+            let ground = Ground { owner, surface, face: face.beside, geometry: Some(&face.surface) };
             gather(&mut uses, ground, &face.bounds);
         }
         let edges = self.new_edges(changes, &uses)?;
@@ -56,7 +57,7 @@ impl<'a> Lowering<'a> {
             None => super::instance_name(model.origins.surfaces[model.brep.faces[face].surface])?,
         };
         let geometry = changes.surfaces.get(&face).or_else(|| model.brep.surface_of(face).read());
-        Ok(Ground { surface, face, geometry })
+        Ok(Ground { owner: Owner::Old(face), surface, face, geometry })
     }
 
     fn new_surface(&mut self, face: &NewFace) -> Result<InstanceName, LowerError> {
