@@ -4,8 +4,10 @@
 //! homogeneous points `(w x, w y, …, w)`.
 
 pub mod basis;
+mod bezier;
 pub mod curve;
 mod degree;
+pub mod deviation;
 pub mod evaluate;
 pub mod gram;
 pub mod interpolate;
@@ -17,6 +19,7 @@ pub mod surface;
 
 pub use basis::LocalBasis;
 pub use curve::{NurbsCurve, NurbsCurve2, NurbsCurve3};
+pub use deviation::{Accuracy, Deviation, deviation, deviation_at_equal_parameters};
 pub use evaluate::SurfaceDerivatives;
 pub use gram::{gram, gram_band};
 pub use interpolate::{GrevilleCollocation, interpolate_grid};
