@@ -179,7 +179,8 @@ fn a_bound_without_bisection_still_holds() {
 fn pair() -> impl Strategy<Value = (NurbsSurface, NurbsSurface)> {
     let numbers = prop::collection::vec(-1.0..1.0_f64, 6);
     (numbers, 0.0..0.4_f64, 1_usize..4, any::<bool>()).prop_map(|(a, weight, multiple, flat)| {
-        let shape = |x: f64, y: f64| [10.0 * x, 8.0 * y, a[0] * (3.0 * x).sin() + a[1] * (4.0 * y + a[2]).cos()];
+        let shape =
+            |x: f64, y: f64| [10.0 * x, 8.0 * y, a[0] * (3.0 * x).sin() + a[1] * (4.0 * y + a[2]).cos()];
         let weights = |x: f64, y: f64| if flat { 1.0 } else { 1.0 + weight * (3.0 * x + a[3]).sin() * y };
         let reference = weighted_part([3, 2], [3, 4], shape, weights);
         let bumped = |x: f64, y: f64| {

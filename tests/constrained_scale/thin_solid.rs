@@ -106,7 +106,8 @@ fn door_skins(factors: [f64; 3]) -> Result<Scaled, ScaleError> {
             hole(1, [0.25, 0.7], [0.04, 0.04 / 0.7], 0.0),
         ]
     };
-    let of = |surface| FaceTask { name: "door".to_owned(), surface, held: holes(), outer: None, scaled: vec![] };
+    let of =
+        |surface| FaceTask { name: "door".to_owned(), surface, held: holes(), outer: None, scaled: vec![] };
     scale_faces(&[of(&top), of(&bottom)], &Scaling::new(factors))
 }
 
@@ -119,7 +120,8 @@ fn the_door_stays_as_thick_as_the_specification_says() {
     ] {
         let scaled = door_skins(factors).unwrap();
         let [pair] = scaled.skins[..] else { panic!("{:?}", scaled.skins) };
-        let close = |found: f64, expected: f64| assert!((found - expected).abs() <= 0.03 * expected, "{pair:?}");
+        let close =
+            |found: f64, expected: f64| assert!((found - expected).abs() <= 0.03 * expected, "{pair:?}");
         close(pair.before.least, 2.848);
         close(pair.before.greatest, 3.000);
         close(pair.plain.least, plain[0]);

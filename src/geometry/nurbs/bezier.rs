@@ -83,9 +83,9 @@ impl BezierPatch {
     /// The same patch with at least the given degrees.
     pub fn elevated(&self, degrees: [usize; 2]) -> Self {
         let mut patch = self.clone();
-        for k in 0..2 {
-            while patch.degrees[k] < degrees[k] {
-                patch = patch.elevated_once(k);
+        for (direction, degree) in degrees.into_iter().enumerate() {
+            while patch.degrees[direction] < degree {
+                patch = patch.elevated_once(direction);
             }
         }
         patch

@@ -78,9 +78,8 @@ pub fn certified(face: &ScaledFace) -> Certified {
         let (k, l) = (spans_u[i], spans_v[j]);
         (k - p..=k).all(|row| (l - q..=l).all(|column| face.held.contains(row, column)))
     };
-    let bound = |part: &dyn Fn([usize; 2]) -> bool| {
-        deviation(&face.surface, &face.image, &Accuracy::default(), part)
-    };
+    let bound =
+        |part: &dyn Fn([usize; 2]) -> bool| deviation(&face.surface, &face.image, &Accuracy::default(), part);
     Certified { outside: bound(&|cell| !held(cell)), held: bound(&held) }
 }
 

@@ -63,7 +63,8 @@ pub(super) fn pairs(faces: &[Prepared], scaled: &Scaled) -> Vec<SkinPair> {
     for first in 0..faces.len() {
         for second in first + 1..faces.len() {
             let of = |face: usize| move |&(f, _): &(usize, usize)| f == face;
-            let shared = |loops: &[(usize, usize)]| loops.iter().any(of(first)) && loops.iter().any(of(second));
+            let shared =
+                |loops: &[(usize, usize)]| loops.iter().any(of(first)) && loops.iter().any(of(second));
             if scaled.groups.iter().any(|group| shared(&group.loops)) {
                 pairs.extend(Skins::new(faces, scaled, [first, second]).measured());
             }

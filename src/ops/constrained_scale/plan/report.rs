@@ -6,13 +6,13 @@ use super::hold::Held;
 use super::layout::spline_of;
 use super::scope::face_name;
 use super::stretch::{SolvedGroup, Stretched};
+use crate::geometry::nurbs::Deviation;
 use crate::model::Model;
 use crate::ops::OperationError;
-use crate::geometry::nurbs::Deviation;
-use crate::ops::constrained_scale::skins::Thickness;
 use crate::ops::constrained_scale::measures::{
     MotionDeviation, REPORT_SAMPLES, certified, motion_deviation, quality,
 };
+use crate::ops::constrained_scale::skins::Thickness;
 
 /// Figures of all faces with held loops.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
