@@ -4,8 +4,10 @@
 //! homogeneous points `(w x, w y, …, w)`.
 
 pub mod basis;
+mod bezier;
 pub mod curve;
 mod degree;
+pub mod deviation;
 pub mod evaluate;
 mod extend;
 pub mod gram;
@@ -18,6 +20,7 @@ pub mod surface;
 
 pub use basis::LocalBasis;
 pub use curve::{NurbsCurve, NurbsCurve2, NurbsCurve3};
+pub use deviation::{Accuracy, Deviation, deviation, deviation_at_equal_parameters};
 pub use evaluate::SurfaceDerivatives;
 pub use extend::ExtensionError;
 pub use gram::{gram, gram_band};
