@@ -35,9 +35,7 @@ impl PointCloud {
             return Err(CloudError::NotFinite { format, place: format!("point {}", at + 1) });
         }
         check_count(format, points.len() as u64)?;
-        let mut collected = Collected::default();
-        collected.points = points;
-        collected.finish()
+        Collected { points, ..Collected::default() }.finish()
     }
 
     /// The points.

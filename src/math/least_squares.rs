@@ -32,13 +32,9 @@ const UNDETERMINED: f64 = 1e-13;
 impl<const N: usize> NormalEquations<N> {
     /// Adds the equation `row · x = value`.
     pub fn add(&mut self, row: &[f64; N], value: f64, weight: f64) {
-        for i in 0..N {
-            let scaled = weight * row[i];
-            self.right[i] += scaled * value;
-            for j in 0..N {
-                self.matrix[(i, j)] += scaled * row[j];
-            }
-        }
+        let row = SVector::<f64, N>::from(*row);
+        self.matrix += (row * weight) * row.transpose();
+        self.right += row * (weight * value);
     }
 
     /// The unknowns; `None` when the equations do not determine them.
@@ -47,7 +43,8 @@ impl<const N: usize> NormalEquations<N> {
         let greatest = self.matrix.diagonal().max();
         let factor = self.matrix.cholesky()?;
         let least = factor.l_dirty().diagonal().min();
-        if !(least * least > UNDETERMINED * greatest) {
+        let determined = least * least > UNDETERMINED * greatest;
+        if !determined {
             return None;
         }
         let values: [f64; N] = factor.solve(&self.right).into();

@@ -77,11 +77,7 @@ fn objective_points_are_found_without_labels() {
         let scales = Scales { spacing, tolerance: None, size: 44.0 };
         let result = segmented(&points, &heights, &scales);
         let (found, others) = shares(&result, &cloud.labels);
-        println!(
-            "noise {noise}: found {found:.4}, others {others:.4}, {:?}",
-            (result.noise, result.curvature, result.separation)
-        );
-        assert!(found >= found_at_least && others <= others_at_most, "{found} {others}");
+        assert!(found >= found_at_least && others <= others_at_most, "noise {noise}: {found} {others}");
         assert!((result.noise - noise).abs() < 0.05 * noise + 1e-9);
         assert!(result.roles[own..].iter().all(|r| *r == Role::Outlier), "{:?}", &result.roles[own..]);
         assert!(result.separation > 3.0);
