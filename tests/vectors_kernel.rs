@@ -95,7 +95,7 @@ fn k2_degree_elevation() {
 fn bicubic(value: &Value) -> NurbsSurface {
     let knots = |name: &str| KnotVector::new(3, numbers(&value[name])).unwrap();
     let rows = value["controls"].as_array().unwrap().iter().flat_map(|row| row.as_array().unwrap());
-    let points: Vec<Point3<f64>> = rows.map(|p| numbers(p)).map(|p| Point3::new(p[0], p[1], p[2])).collect();
+    let points: Vec<Point3<f64>> = rows.map(numbers).map(|p| Point3::new(p[0], p[1], p[2])).collect();
     NurbsSurface::from_points(knots("tu"), knots("tv"), &points, None).unwrap()
 }
 

@@ -3,8 +3,9 @@
 //! Elements that are not named stay as they are. A change set is whole or absent: an operation that
 //! cannot do its job returns an error instead.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
+use super::Origin;
 use crate::brep::{CoedgeId, CurveId, EdgeId, FaceId, VertexId};
 use crate::geometry::{Curve, Curve2d, Surface};
 use crate::math::Point3;
@@ -44,6 +45,10 @@ pub struct ChangeSet {
     pub bounds: BTreeMap<FaceId, Vec<NewBound>>,
     /// New geometry of a curve that belongs to no edge.
     pub free_curves: BTreeMap<CurveId, Curve>,
+    /// New numbers of records that state something of the shape: the value of a measure, the coordinates of a point.
+    pub stated: BTreeMap<Origin, Vec<f64>>,
+    /// Properties that are stated no more; one that something else in the file refers to stays.
+    pub unstated: BTreeSet<Origin>,
 }
 
 impl ChangeSet {
@@ -56,5 +61,7 @@ impl ChangeSet {
             && self.points.is_empty()
             && self.bounds.is_empty()
             && self.free_curves.is_empty()
+            && self.stated.is_empty()
+            && self.unstated.is_empty()
     }
 }

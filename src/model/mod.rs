@@ -8,6 +8,7 @@ pub mod annotation;
 pub mod assembly;
 pub mod change_set;
 pub mod inventory;
+pub mod mass;
 pub mod origin;
 
 pub use annotation::{Annotation, AnnotationKind, Element, Measure};
@@ -16,6 +17,7 @@ pub use assembly::{
 };
 pub use change_set::ChangeSet;
 pub use inventory::Inventory;
+pub use mass::{Mass, Subject};
 pub use origin::{Origin, Origins};
 
 use crate::brep::{Arena, BodyId, Brep, CurveId, FaceId};

@@ -17,7 +17,7 @@ use crate::geometry::nurbs::KnotVector;
 use crate::source::Span;
 
 impl<'a> Lowering<'a> {
-    fn view(&self, name: InstanceName) -> Option<EntityView<'a>> {
+    pub(super) fn view(&self, name: InstanceName) -> Option<EntityView<'a>> {
         EntityView::of(self.structure.instance(name)?)
     }
 
@@ -241,7 +241,7 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    fn raw(&self, name: InstanceName, attribute: &'static str, missing: &str) -> String {
+    pub(super) fn raw(&self, name: InstanceName, attribute: &'static str, missing: &str) -> String {
         let span = self.attribute_span(name, attribute).ok();
         let text = span.and_then(|span| std::str::from_utf8(self.structure.source().slice(span)).ok());
         text.unwrap_or(missing).to_owned()

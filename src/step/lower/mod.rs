@@ -19,6 +19,7 @@ mod derived_curve;
 mod placement;
 mod point;
 mod request;
+mod statement;
 mod surface;
 
 use std::collections::BTreeMap;
@@ -116,6 +117,8 @@ pub fn lower(structure: &ExchangeStructure, model: &Model, changes: &ChangeSet) 
     lowering.vectors()?;
     lowering.directions()?;
     lowering.points()?;
+    lowering.state(changes)?;
+    lowering.unstate(changes)?;
     lowering.remove_orphans();
     lowering.finish()
 }
