@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use serde::de;
 
+pub use super::deform_file::Deform;
 pub use super::detail_file::DetailTransfer;
 pub use super::paste_file::FeaturePaste;
 use super::selector::Selector;
@@ -103,7 +104,7 @@ pub struct ToleranceSettings {
     pub length: Option<LengthSetting>,
 }
 
-fn positive_length<'de, D: serde::Deserializer<'de>>(
+pub(super) fn positive_length<'de, D: serde::Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<LengthSetting>, D::Error> {
     let length = Option::<LengthSetting>::deserialize(deserializer)?;
@@ -204,6 +205,8 @@ pub enum ValidatorName {
 pub enum Operation {
     /// Scale a part, while chosen features keep their shape and size.
     ConstrainedScale(Box<ConstrainedScale>),
+    /// Pull lines on a face to given curves.
+    Deform(Box<Deform>),
     /// Carry the detail of one curve onto another.
     DetailTransfer(Box<DetailTransfer>),
     /// Carry a freeform feature from one face onto another.
@@ -218,7 +221,7 @@ impl Operation {
     pub fn growth(&self) -> f64 {
         match self {
             Self::ConstrainedScale(scale) => scale.factors.0.into_iter().fold(1.0, f64::max),
-            Self::FeaturePaste(_) | Self::DetailTransfer(_) | Self::Simplify(_) => 1.0,
+            Self::Deform(_) | Self::FeaturePaste(_) | Self::DetailTransfer(_) | Self::Simplify(_) => 1.0,
         }
     }
 }
@@ -227,6 +230,7 @@ impl Operation {
 #[serde(rename_all = "snake_case")]
 enum OperationKind {
     ConstrainedScale,
+    Deform,
     DetailTransfer,
     FeaturePaste,
     Simplify,
@@ -253,6 +257,11 @@ impl<'de> Deserialize<'de> for Operation {
                         let scale = ConstrainedScale::deserialize(rest)?;
                         scale.check().map_err(de::Error::custom)?;
                         Ok(Operation::ConstrainedScale(Box::new(scale)))
+                    }
+                    OperationKind::Deform => {
+                        let deform = Deform::deserialize(rest)?;
+                        deform.check().map_err(de::Error::custom)?;
+                        Ok(Operation::Deform(Box::new(deform)))
                     }
                     OperationKind::DetailTransfer => {
                         let transfer = DetailTransfer::deserialize(rest)?;

@@ -66,6 +66,14 @@ pub enum OperateError {
         /// The name.
         name: u64,
     },
+    /// A line of a deformation cannot be had.
+    #[error("{key}: {reason}")]
+    Line {
+        /// The key: `lines[0].from`.
+        key: String,
+        /// Why.
+        reason: String,
+    },
     /// A hold does not fit the part.
     #[error("hold: {0}")]
     Hold(String),
@@ -96,6 +104,7 @@ impl OperateError {
             Self::DetailFile { .. } => "job.detail-file",
             Self::FeatureFile { .. } => "job.feature-file",
             Self::NoCurve { .. } => "paste.no-curve",
+            Self::Line { .. } => "deform.no-line",
             Self::Hold(_) => "select.no-hold",
             Self::Operation(error) => error.code(),
             Self::NoFace => "select.no-face",
@@ -113,6 +122,10 @@ pub type Operated = (ChangeSet, OperationReport);
 pub fn operate(model: &Model, source: &Source, operation: &Operation) -> Result<Operated, OperateError> {
     match operation {
         Operation::ConstrainedScale(settings) => scale(model, source, settings),
+        Operation::Deform(words) => {
+            let planned = super::deform_operate::planned(model, words)?;
+            Ok(reported("deform", planned.change_set, &planned.measures, &[], source))
+        }
         Operation::DetailTransfer(words) => {
             let planned = super::detail_operate::planned(model, words)?;
             Ok(reported("detail_transfer", planned.change_set, &planned.measures, &planned.notes, source))

@@ -88,19 +88,7 @@ fn near(nearest: &Option<String>) -> String {
 /// # Errors
 /// [`PlanError::NoMatch`].
 pub fn resolve(job: &mut Job, folder: &Path) -> Result<(), PlanError> {
-    for operation in &mut job.operation {
-        let file = match operation {
-            Operation::ConstrainedScale(_) | Operation::Simplify(_) => None,
-            Operation::DetailTransfer(transfer) => {
-                let source = &mut transfer.source;
-                source.file.as_mut().or(source.detail.as_mut())
-            }
-            Operation::FeaturePaste(paste) => {
-                let source = &mut paste.source;
-                source.file.as_mut().or(source.feature.as_mut())
-            }
-        };
-        let Some(file) = file else { continue };
+    for file in job.operation.iter_mut().flat_map(files) {
         let path = folder.join(&*file);
         if !path.is_file() {
             let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
@@ -109,6 +97,22 @@ pub fn resolve(job: &mut Job, folder: &Path) -> Result<(), PlanError> {
         *file = path.to_string_lossy().into_owned();
     }
     Ok(())
+}
+
+/// Files that an operation reads.
+fn files(operation: &mut Operation) -> Vec<&mut String> {
+    match operation {
+        Operation::ConstrainedScale(_) | Operation::Simplify(_) => Vec::new(),
+        Operation::Deform(deform) => deform.files().collect(),
+        Operation::DetailTransfer(transfer) => {
+            let source = &mut transfer.source;
+            source.file.as_mut().or(source.detail.as_mut()).into_iter().collect()
+        }
+        Operation::FeaturePaste(paste) => {
+            let source = &mut paste.source;
+            source.file.as_mut().or(source.feature.as_mut()).into_iter().collect()
+        }
+    }
 }
 
 /// The parts of a job, sorted by path; `folder` is the job file's.

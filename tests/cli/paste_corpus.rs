@@ -93,7 +93,7 @@ fn pasted(path: &str, kind: &str) -> bool {
 }
 
 /// Nothing but the face, and perhaps its seam, has changed, and FreeCAD finds the part valid.
-fn held(fixture: &Fixture, before: &Model, face: FaceId) {
+pub fn held(fixture: &Fixture, before: &Model, face: FaceId) {
     let after = model(fixture, "out/part.stp");
     let points = |m: &Model| m.brep.vertices.iter().map(|(_, v)| v.point).collect::<Vec<_>>();
     assert!(points(before) == points(&after), "vertices");
