@@ -8,9 +8,11 @@
 //! What this crate does not do: repair files, guess units, renumber instances, or write a file anew
 //! when a patch will do.
 
+pub mod batch;
 pub mod brep;
 pub mod cli;
 pub mod diagnostic;
+pub mod diff;
 pub mod document;
 pub mod exchange;
 pub mod geometry;

@@ -1,11 +1,14 @@
 //! The command line's words.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::batch::limits::MemorySize;
+use crate::batch::{Limits, Share};
 use crate::job::detail_file::CurveSelector;
-use crate::job::file::ValidatorName;
+use crate::job::file::{Seconds, ValidatorName};
 use crate::job::paste_file::RegionSetting;
 use crate::job::selector::Selector;
 
@@ -43,6 +46,19 @@ pub enum Command {
         /// Which one
         of: SchemaOf,
     },
+    /// Print a script that completes commands and flags
+    Completions {
+        /// For this shell
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page, or write one for each command into a folder
+    Man {
+        /// The folder
+        folder: Option<PathBuf>,
+    },
+    /// Do one part of a run; started by `run`, with its order on standard input
+    #[command(hide = true)]
+    Worker,
 }
 
 /// Arguments of `run`.
@@ -60,6 +76,50 @@ pub struct RunArguments {
     /// Write the report as JSON to a file as well
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
+    /// Do parts again that have not changed
+    #[arg(long)]
+    pub fresh: bool,
+    /// Do one share of the parts: I of N, or that of an array job's index (Slurm, Kubernetes, AWS Batch)
+    #[arg(long, value_name = "I/N|auto/N")]
+    pub shard: Option<Share>,
+    /// What the run may use
+    #[command(flatten)]
+    pub limits: LimitArguments,
+}
+
+/// What a run over parts may use.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct LimitArguments {
+    /// Parts at a time; left out, one for each processor
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub jobs: Option<u16>,
+    /// Memory for all parts at a time together, such as `8 GB`; left out, three quarters of the machine's
+    #[arg(long, value_name = "SIZE")]
+    pub memory: Option<MemorySize>,
+    /// Seconds that one part may take
+    #[arg(long, value_name = "SECONDS", default_value = "3600", value_parser = seconds)]
+    pub timeout: f64,
+    /// Tell each step of each part
+    #[arg(short, long)]
+    pub verbose: bool,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds: f64 = text.parse().map_err(|_| format!("`{text}` is no number of seconds"))?;
+    Seconds::try_from(seconds).map(|seconds| seconds.0)
+}
+
+impl LimitArguments {
+    /// The limits, with the machine's where nothing is said.
+    #[must_use]
+    pub fn limits(&self) -> Limits {
+        let machine = Limits::of_machine();
+        Limits {
+            jobs: self.jobs.map_or(machine.jobs, usize::from),
+            memory: self.memory.map_or(machine.memory, |size| Some(size.0)),
+            time: Duration::from_secs_f64(self.timeout),
+        }
+    }
 }
 
 /// Arguments of `convert`.

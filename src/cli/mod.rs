@@ -9,7 +9,9 @@ mod convert;
 pub mod exit_code;
 mod feature;
 mod inspect;
+mod manual;
 mod print;
+mod progress;
 mod run;
 mod show;
 mod view;
@@ -49,6 +51,9 @@ pub fn main() -> u8 {
             });
             exit_code::DONE
         }
+        Command::Completions { shell } => manual::completions(shell, &mut printer),
+        Command::Man { folder } => manual::pages(folder.as_deref(), &mut printer),
+        Command::Worker => crate::batch::worker::work(std::io::stdin(), &mut std::io::stdout()),
     };
     printer.code().unwrap_or(code)
 }

@@ -213,6 +213,17 @@ pub enum Operation {
 }
 
 impl Operation {
+    /// The word of the job file.
+    #[must_use]
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::ConstrainedScale(_) => "constrained_scale",
+            Self::DetailTransfer(_) => "detail_transfer",
+            Self::FeaturePaste(_) => "feature_paste",
+            Self::Simplify(_) => "simplify",
+        }
+    }
+
     /// By how much the operation stretches a distance at most; at least 1, since what it leaves alone stays.
     #[must_use]
     pub fn growth(&self) -> f64 {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::finding::tolerance;
 use crate::brep::mass_properties::{self, Quadrature};
@@ -13,7 +13,7 @@ use crate::math::Point3;
 use crate::model::{Context, Inventory, Model};
 
 /// What is inside a part.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Figures {
     /// Names of the application protocol, as the file writes them.
     pub schema: Vec<String>,
@@ -67,7 +67,7 @@ impl Figures {
 }
 
 /// Mass properties of one body of density one, in its file units.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct BodyMeasures {
     /// Its record.
     pub id: String,
@@ -98,7 +98,7 @@ pub struct BodyMeasures {
 }
 
 /// What one face measures, in its file units.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FaceMeasures {
     /// Its area.
     pub area: f64,

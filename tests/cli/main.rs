@@ -1,6 +1,7 @@
 //! The real program in a fresh folder: what it prints, what it leaves, and how it ends.
 
 mod accepted;
+mod batch;
 mod detail;
 mod jobs;
 mod locality;
