@@ -68,11 +68,15 @@ impl FromStr for MemorySize {
             "m" => 1e6,
             "g" => 1e9,
             "t" => 1e12,
-            _ => return Err(format!("`{text}` is not a size of memory; expected such as `800 MB` or `8 GB`")),
+            _ => {
+                return Err(format!("`{text}` is not a size of memory; expected such as `800 MB` or `8 GB`"));
+            }
         };
         let bytes = number.parse::<f64>().map_err(|_| format!("`{text}` is not a size of memory"))? * factor;
         // The cast is of a number between the least and 2^53.
-        if bytes >= LEAST as f64 && bytes < 9e15 { Ok(Self(bytes as u64)) } else {
+        if bytes >= LEAST as f64 && bytes < 9e15 {
+            Ok(Self(bytes as u64))
+        } else {
             Err(format!("{text} is not enough for a worker, or beyond any machine; expected at least 16 MB"))
         }
     }

@@ -123,10 +123,8 @@ pub(super) fn remember(part: &Part, key: &str, report: &PartReport) -> Result<()
     let mut report = report.clone();
     report.unchanged = false;
     let record = Record { version: VERSION, key: key.to_owned(), outputs, report };
-    let text = serde_json::to_string_pretty(&record).map_err(|error| FileError {
-        path: place.clone(),
-        source: std::io::Error::other(error),
-    })?;
+    let text = serde_json::to_string_pretty(&record)
+        .map_err(|error| FileError { path: place.clone(), source: std::io::Error::other(error) })?;
     Staged::write(&place, text.as_bytes()).and_then(Staged::commit)
 }
 

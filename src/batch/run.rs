@@ -92,10 +92,13 @@ pub fn run(
     let plan = plan_digest(&all, run.job);
     let parts = match run.shard {
         None => all,
-        Some(Shard { index, count }) => split(&all, count)[index - 1].iter().map(|&at| all[at].clone()).collect(),
+        Some(Shard { index, count }) => {
+            split(&all, count)[index - 1].iter().map(|&at| all[at].clone()).collect()
+        }
     };
     watch(Progress::Begun { parts: parts.len(), bytes: parts.iter().map(|(_, bytes)| bytes).sum() });
-    let batch = Batch { run, parts: &parts, circumstances: Circumstances::of(run.job, &run.job.job()?), interrupt };
+    let batch =
+        Batch { run, parts: &parts, circumstances: Circumstances::of(run.job, &run.job.job()?), interrupt };
     let parts = batch.reports(watch);
     Ok(Report {
         version: 1,
@@ -136,7 +139,8 @@ impl Batch<'_> {
         let mut reports = self.pass(&largest_first(self.parts), limits.jobs, limits.share(), watch);
         if limits.jobs > 1 {
             // Alone, a part may have all the memory: its fate must not hang on how many work beside it.
-            let again: Vec<usize> = reports.iter().filter(|(_, r)| is_out_of_memory(r)).map(|(&at, _)| at).collect();
+            let again: Vec<usize> =
+                reports.iter().filter(|(_, r)| is_out_of_memory(r)).map(|(&at, _)| at).collect();
             reports.extend(self.pass(&again, 1, limits.memory, watch));
         }
         for (at, report) in &mut reports {
@@ -165,7 +169,9 @@ impl Batch<'_> {
             let _ = tell.send(Said::Finished(at, Box::new(report)));
         };
         let mut hear = |said: Said| match said {
-            Said::Stage(at, stage) => watch(Progress::Stage { input: &self.parts[at].0.input, stage: &stage }),
+            Said::Stage(at, stage) => {
+                watch(Progress::Stage { input: &self.parts[at].0.input, stage: &stage })
+            }
             Said::Finished(at, report) => {
                 if last || !is_out_of_memory(&report) {
                     watch(Progress::Finished { report: &report, bytes: self.parts[at].1 });
@@ -199,7 +205,9 @@ impl Batch<'_> {
         let order = Order { task, memory, threads: self.run.limits.threads() };
         let mut report = match supervise(&order, self.run.limits.time, self.interrupt, hear) {
             Ok(Word::Ran(report)) => *report,
-            Ok(Word::Stage(stage)) => self.dead(at, &PartError::Crash { stage: Some(stage), words: String::new() }),
+            Ok(Word::Stage(stage)) => {
+                self.dead(at, &PartError::Crash { stage: Some(stage), words: String::new() })
+            }
             Err(error) => self.dead(at, &error),
         };
         if report.seconds == 0.0 {
@@ -242,7 +250,8 @@ impl Batch<'_> {
     }
 
     fn sweep_all(&self) {
-        let folders: BTreeSet<&Path> = self.parts.iter().filter_map(|(part, _)| part.output.parent()).collect();
+        let folders: BTreeSet<&Path> =
+            self.parts.iter().filter_map(|(part, _)| part.output.parent()).collect();
         for folder in folders {
             sweep(folder);
             sweep(&folder.join(".resurf"));

@@ -24,7 +24,9 @@ const MOST: usize = 1_000_000;
 impl FromStr for Share {
     type Err = String;
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("`{text}` is no share; expected `I/N` with I from 1 to N, or `auto/N` in an array job");
+        let wrong = || {
+            format!("`{text}` is no share; expected `I/N` with I from 1 to N, or `auto/N` in an array job")
+        };
         let (index, count) = text.split_once('/').ok_or_else(wrong)?;
         let count = count.parse().ok().filter(|count| (1..=MOST).contains(count)).ok_or_else(wrong)?;
         if index == "auto" {
@@ -75,13 +77,21 @@ pub(super) fn split(parts: &Sized, count: usize) -> Vec<Vec<usize>> {
         shares[least].0 += parts[at].1 + 1;
         shares[least].1.push(at);
     }
-    shares.into_iter().map(|(_, mut of_share)| { of_share.sort_unstable(); of_share }).collect()
+    shares
+        .into_iter()
+        .map(|(_, mut of_share)| {
+            of_share.sort_unstable();
+            of_share
+        })
+        .collect()
 }
 
 /// Numbers of the parts by size, the largest first, then by path.
 pub(super) fn largest_first(parts: &Sized) -> Vec<usize> {
     let mut order: Vec<usize> = (0..parts.len()).collect();
-    let key = |at: usize| -> (std::cmp::Reverse<u64>, &PathBuf) { (std::cmp::Reverse(parts[at].1), &parts[at].0.input) };
+    let key = |at: usize| -> (std::cmp::Reverse<u64>, &PathBuf) {
+        (std::cmp::Reverse(parts[at].1), &parts[at].0.input)
+    };
     order.sort_by(|&a, &b| key(a).cmp(&key(b)));
     order
 }

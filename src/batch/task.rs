@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use crate::job::Job;
 use crate::job::plan::{self, Part, PlanError};
 use crate::job::read::{JobFileError, Syntax, read};
 use crate::job::report::PartReport;
 use crate::job::run::{Mode, Stage};
-use crate::job::Job;
 
 /// A job as it stands in its file: every worker reads the same text, whatever happens to the file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]

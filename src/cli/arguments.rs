@@ -36,6 +36,8 @@ pub enum Command {
     Inspect(InspectArguments),
     /// Check parts, and ask other programs about them
     Check(CheckArguments),
+    /// Tell how two parts differ, by their geometry and structure
+    Diff(DiffArguments),
     /// Write one self-contained HTML page that shows a part
     View(ViewArguments),
     /// Keep features for pastes without their parts
@@ -173,6 +175,39 @@ pub struct InspectArguments {
     /// Measure volume, area and centroid of each body; takes seconds where faces have thousands of control points
     #[arg(long)]
     pub measure: bool,
+}
+
+/// Arguments of `diff`.
+#[derive(Debug, Args)]
+pub struct DiffArguments {
+    /// First part
+    #[arg(value_name = "A")]
+    pub before: PathBuf,
+    /// Second part
+    #[arg(value_name = "B")]
+    pub after: PathBuf,
+    /// Distance within which points count as one: a number in the first file's units, or with a unit; left out, the greatest
+    /// of the files' uncertainties and a millionth of the size
+    #[arg(long, value_name = "LENGTH")]
+    pub tolerance: Option<crate::units::Length>,
+    /// Look at one side only
+    #[arg(long)]
+    pub only: Option<Aspect>,
+    /// Write JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Write a page that shows the second part with the distances as colours
+    #[arg(long, value_name = "PAGE")]
+    pub html: Option<PathBuf>,
+}
+
+/// What `diff` looks at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Aspect {
+    /// Faces and free curves
+    Geometry,
+    /// Products, names, looks, units, annotations
+    Structure,
 }
 
 /// Arguments of `view`.

@@ -32,10 +32,13 @@ pub fn pages(folder: Option<&Path>, printer: &mut Printer) -> u8 {
     command.build();
     let mut ahead = vec![command];
     while let Some(command) = ahead.pop() {
-        ahead.extend(command.get_subcommands().filter(|c| !c.is_hide_set() && c.get_name() != "help").cloned());
+        ahead.extend(
+            command.get_subcommands().filter(|c| !c.is_hide_set() && c.get_name() != "help").cloned(),
+        );
         let name = command.get_display_name().unwrap_or_else(|| command.get_name()).to_owned();
         let place = folder.join(format!("{name}.1"));
-        let written = Staged::write(&place, page(command.display_name(name)).as_bytes()).and_then(Staged::commit);
+        let written =
+            Staged::write(&place, page(command.display_name(name)).as_bytes()).and_then(Staged::commit);
         if let Err(error) = written {
             printer.message(Severity::Error, &format!("the manual page cannot be written: {error}"));
             return exit_code::IO;

@@ -6,6 +6,7 @@
 mod arguments;
 mod check;
 mod convert;
+mod diff;
 pub mod exit_code;
 mod feature;
 mod inspect;
@@ -39,6 +40,7 @@ pub fn main() -> u8 {
         Command::Convert(arguments) => convert::convert(&arguments, &mut printer),
         Command::Inspect(arguments) => inspect::inspect(&arguments, &mut printer),
         Command::Check(arguments) => check::check(&arguments, &mut printer),
+        Command::Diff(arguments) => diff::diff(&arguments, &mut printer),
         Command::View(arguments) => view::view(&arguments, &mut printer),
         Command::Feature(FeatureCommand::Export(arguments)) => feature::export(&arguments, &mut printer),
         Command::Feature(FeatureCommand::Detail(arguments)) => feature::detail(&arguments, &mut printer),

@@ -136,7 +136,9 @@ impl PartError {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Input(error) if error.source.kind() == std::io::ErrorKind::NotFound => code::UNREADABLE,
-            Self::Input(error) | Self::Output(error) if error.source.kind() == std::io::ErrorKind::OutOfMemory => {
+            Self::Input(error) | Self::Output(error)
+                if error.source.kind() == std::io::ErrorKind::OutOfMemory =>
+            {
                 code::RESOURCE
             }
             Self::Input(_) | Self::Output(_) | Self::NotStarted(_) => code::IO,

@@ -8,6 +8,7 @@ pub mod contents;
 pub mod detail_file;
 pub mod detail_library;
 mod detail_operate;
+pub mod difference;
 pub mod failure;
 pub mod feature_file;
 pub mod file;

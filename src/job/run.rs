@@ -116,9 +116,12 @@ fn go(
         sides = side_files(job, part, model, report)?;
         let judged = judge::judge(&job.validate, staged.path(), model, None)?;
         report.validators = judged.verdicts;
-        report.losses.extend(judged.unasked.into_iter().map(|text| DiagnosticReport::warning("validate.not-asked", text)));
         report.losses.extend(
-            judge::other_counts(&report.validators, model).map(|text| DiagnosticReport::warning("validate.face-count", text)),
+            judged.unasked.into_iter().map(|text| DiagnosticReport::warning("validate.not-asked", text)),
+        );
+        report.losses.extend(
+            judge::other_counts(&report.validators, model)
+                .map(|text| DiagnosticReport::warning("validate.face-count", text)),
         );
         judge::refuse(&report.validators)?;
     }

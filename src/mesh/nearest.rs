@@ -79,7 +79,8 @@ impl NearestTriangle {
                     }
                 }
                 Some(children) => {
-                    let mut both = children.map(|child| (self.nodes[child].bounds.distance_squared(point), child));
+                    let mut both =
+                        children.map(|child| (self.nodes[child].bounds.distance_squared(point), child));
                     both.sort_by(|a, b| b.0.total_cmp(&a.0));
                     ahead.extend(both);
                 }
@@ -131,7 +132,12 @@ mod tests {
     #[test]
     fn known_distances() {
         let triangle = [Point3::origin(), Point3::new(4.0, 0.0, 0.0), Point3::new(0.0, 4.0, 0.0)];
-        let cases = [([1.0, 1.0, 3.0], 3.0), ([-3.0, 0.0, 4.0], 5.0), ([4.0, 4.0, 0.0], 8f64.sqrt()), ([2.0, -1.0, 0.0], 1.0)];
+        let cases = [
+            ([1.0, 1.0, 3.0], 3.0),
+            ([-3.0, 0.0, 4.0], 5.0),
+            ([4.0, 4.0, 0.0], 8f64.sqrt()),
+            ([2.0, -1.0, 0.0], 1.0),
+        ];
         for (at, expected) in cases {
             assert!((to_triangle(&Point3::from(at), &triangle) - expected).abs() < 1e-14, "{at:?}");
         }

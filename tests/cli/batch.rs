@@ -36,7 +36,8 @@ fn bomb() -> Vec<u8> {
     let mut state = 1;
     for _ in 0..500 {
         // Not too blank: what unfolds to two hundred times its size is refused for that.
-        let block: Vec<u8> = (0..1 << 20).map(|at| if at % 64 == 0 { random(&mut state) as u8 } else { b' ' }).collect();
+        let block: Vec<u8> =
+            (0..1 << 20).map(|at| if at % 64 == 0 { random(&mut state) as u8 } else { b' ' }).collect();
         packed.write_all(&block).expect("into memory");
     }
     packed.finish().expect("into memory")
@@ -71,7 +72,8 @@ fn what_kills_a_worker_is_one_line_in_the_report() {
     executable(&fixture.path("judge"));
     let judge = fixture.path("judge");
     let fixture = fixture.variable("RESURF_FREECADCMD", &judge.to_string_lossy());
-    let run = ["run", "job.toml", "--report", "r.json", "--timeout", "6", "--memory", "300 MB", "--jobs", "2"];
+    let run =
+        ["run", "job.toml", "--report", "r.json", "--timeout", "6", "--memory", "300 MB", "--jobs", "2"];
     let said = fixture.run(&run);
     let expected = [
         ("bomb", 6, "resource.memory"),
@@ -95,7 +97,8 @@ fn what_kills_a_worker_is_one_line_in_the_report() {
 
 #[test]
 fn a_second_run_does_only_what_has_changed() {
-    let fixture = Fixture::new().file("job.toml", PASS).file("parts/a.step", door("a")).file("parts/b.step", door("b"));
+    let fixture =
+        Fixture::new().file("job.toml", PASS).file("parts/a.step", door("a")).file("parts/b.step", door("b"));
     let said = fixture.run(&["run", "job.toml"]);
     assert!(said.contains("2 parts: 2 done, 0 failed\n"), "{said}");
     let said = fixture.run(&["run", "job.toml", "--report", "r.json"]);
@@ -123,10 +126,12 @@ fn one_worker_and_two_give_the_same_bytes() {
         [[operation]]\nkind = \"constrained_scale\"\nfactors = [1.1, 1.2, 1.25]\nhold = [{ loops = \"inner\" }]\n";
     let run = |jobs: &str| {
         let fixture = Fixture::new().file("job.toml", job);
-        let fixture = ["door/door.step", "hood/hood.step", "trunk/trunk.step"].iter().fold(fixture, |f, s| f.sample(s));
+        let fixture =
+            ["door/door.step", "hood/hood.step", "trunk/trunk.step"].iter().fold(fixture, |f, s| f.sample(s));
         let said = fixture.run(&["run", "job.toml", "--jobs", jobs]);
         assert!(said.starts_with("exit code: 0\n"), "{said}");
-        let outputs = fixture.left().into_iter().filter(|name| name.starts_with("out/") && !name.contains(".resurf"));
+        let outputs =
+            fixture.left().into_iter().filter(|name| name.starts_with("out/") && !name.contains(".resurf"));
         outputs.map(|name| (std::fs::read(fixture.path(&name)).expect("an output"), name)).collect::<Vec<_>>()
     };
     let one = run("1");
@@ -137,11 +142,15 @@ fn one_worker_and_two_give_the_same_bytes() {
 #[test]
 fn shares_cover_the_parts_and_merge_into_one_report() {
     let fixture = Fixture::new().file("job.toml", PASS);
-    let fixture = ["a", "b", "c", "d"].iter().fold(fixture, |f, name| f.file(&format!("parts/{name}.step"), door(name)));
-    let run = |share: &str, report: &str| fixture.run(&["run", "job.toml", "--shard", share, "--report", report]);
+    let fixture = ["a", "b", "c", "d"]
+        .iter()
+        .fold(fixture, |f, name| f.file(&format!("parts/{name}.step"), door(name)));
+    let run =
+        |share: &str, report: &str| fixture.run(&["run", "job.toml", "--shard", share, "--report", report]);
     assert!(run("1/2", "1.json").starts_with("exit code: 0\n"));
     assert!(run("2/2", "2.json").starts_with("exit code: 0\n"));
-    let outputs = fixture.left().into_iter().filter(|name| name.starts_with("out/") && !name.contains(".resurf"));
+    let outputs =
+        fixture.left().into_iter().filter(|name| name.starts_with("out/") && !name.contains(".resurf"));
     assert_eq!(outputs.count(), 4);
     let [one, two] = ["1.json", "2.json"].map(|name| outcomes(&json(&fixture, name)));
     assert_eq!((one.len(), two.len()), (2, 2));
@@ -149,7 +158,11 @@ fn shares_cover_the_parts_and_merge_into_one_report() {
     let said = run("auto/2", "3.json");
     assert!(said.starts_with("exit code: 2\n") && said.contains("JOB_COMPLETION_INDEX"), "{said}");
     let fixture = fixture.variable("JOB_COMPLETION_INDEX", "1");
-    assert!(fixture.run(&["run", "job.toml", "--shard", "auto/2", "--report", "3.json"]).contains("nothing was done"));
+    assert!(
+        fixture
+            .run(&["run", "job.toml", "--shard", "auto/2", "--report", "3.json"])
+            .contains("nothing was done")
+    );
     assert_eq!(outcomes(&json(&fixture, "3.json")), two);
 }
 
@@ -159,7 +172,8 @@ fn a_disk_that_is_full_and_a_folder_that_cannot_be_are_told_and_leave_nothing() 
     // No file may grow beyond a few blocks, and the signal that would tell of it is ignored: what a full disk is like.
     let program = assert_cmd::cargo::cargo_bin!("resurf");
     let script = format!("trap '' XFSZ; ulimit -f 16; exec {} run job.toml", program.display());
-    let output = Command::new("sh").args(["-c", &script]).current_dir(fixture.path("")).output().expect("a shell");
+    let output =
+        Command::new("sh").args(["-c", &script]).current_dir(fixture.path("")).output().expect("a shell");
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(7), "{said}");
     assert!(said.contains("the output cannot be written: out/a.step: File too large"), "{said}");
@@ -196,7 +210,8 @@ fn an_interrupted_run_ends_at_once_and_goes_on_later() {
     let process = rustix::process::Pid::from_child(&child);
     rustix::process::kill_process(process, rustix::process::Signal::INT).expect("it is there");
     assert_eq!(child.wait().expect("it ends").code(), Some(130));
-    let expected = [("a", 0, ""), ("b", 130, "run.interrupted")].map(|(s, c, w)| (s.to_owned(), c, w.to_owned()));
+    let expected =
+        [("a", 0, ""), ("b", 130, "run.interrupted")].map(|(s, c, w)| (s.to_owned(), c, w.to_owned()));
     assert_eq!(outcomes(&json(&fixture, "r.json")), expected);
     assert!(!fixture.left().iter().any(|name| name.contains("/.resurf-")), "{:?}", fixture.left());
 
@@ -216,9 +231,9 @@ fn random(state: &mut u64) -> u64 {
 fn a_run_that_is_killed_at_any_moment_leaves_whole_files_only() {
     let parts = ["a", "b", "c", "d"];
     let content = |name: &str| door(name) + &"/* as long as a real part */\n".repeat(20_000);
-    let fixture = parts
-        .iter()
-        .fold(Fixture::new().file("job.toml", PASS), |f, name| f.file(&format!("parts/{name}.step"), content(name)));
+    let fixture = parts.iter().fold(Fixture::new().file("job.toml", PASS), |f, name| {
+        f.file(&format!("parts/{name}.step"), content(name))
+    });
     let program = assert_cmd::cargo::cargo_bin!("resurf");
     let whole = |must: bool| {
         for name in parts {
