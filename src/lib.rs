@@ -22,6 +22,8 @@ pub mod mesh;
 pub mod model;
 pub mod ops;
 pub mod picture;
+pub mod publish;
+pub mod regress;
 pub mod source;
 pub mod step;
 pub mod units;

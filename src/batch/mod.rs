@@ -9,8 +9,11 @@
 //! that a part's fate does not hang on the number of workers either.
 
 mod digest;
+pub mod illustrate;
 pub mod interrupt;
 pub mod limits;
+pub mod measure;
+pub mod merge;
 mod queue;
 mod record;
 pub mod run;
@@ -22,6 +25,7 @@ pub mod worker;
 
 pub use interrupt::Interrupt;
 pub use limits::Limits;
+pub use queue::each;
 pub use run::{Progress, Run, run};
 pub use shard::Share;
 pub use task::JobText;

@@ -7,7 +7,7 @@ use std::sync::mpsc::{Sender, channel};
 
 /// Does all items in their order, at most `hands` at a time. `work` is given an item and where to say what it does;
 /// `hear` gets what is said, in this thread. Nothing new begins once `ended` holds.
-pub(super) fn each<I: Send, S: Send>(
+pub fn each<I: Send, S: Send>(
     items: impl IntoIterator<Item = I>,
     hands: usize,
     ended: &(dyn Fn() -> bool + Sync),
@@ -40,7 +40,7 @@ mod tests {
     fn every_item_is_done_once_whatever_the_number_of_hands() {
         for hands in [0, 1, 2, 7] {
             let mut heard = Vec::new();
-            let work = |item: u32, tell: &Sender<u32>| drop(tell.send(item * item));
+            let work = |item: u32, tell: &Sender<u32>| tell.send(item * item).expect("somebody hears");
             each(0..20, hands, &|| false, &work, &mut |square| heard.push(square));
             heard.sort_unstable();
             assert_eq!(heard, (0..20).map(|n| n * n).collect::<Vec<_>>());
@@ -50,7 +50,13 @@ mod tests {
     #[test]
     fn nothing_begins_after_the_end() {
         let mut heard = 0;
-        each(0..20, 2, &|| true, &|item, tell: &Sender<i32>| drop(tell.send(item)), &mut |_| heard += 1);
+        each(
+            0..20,
+            2,
+            &|| true,
+            &|item, tell: &Sender<i32>| tell.send(item).expect("somebody hears"),
+            &mut |_| heard += 1,
+        );
         assert_eq!(heard, 0);
     }
 }

@@ -20,7 +20,7 @@ use crate::job::report::{PartReport, Status};
 use crate::job::run::program;
 
 /// Folder of the records, beside the outputs.
-const FOLDER: &str = ".resurf";
+pub(super) const FOLDER: &str = ".resurf";
 
 /// Version of the records' own form.
 const VERSION: u32 = 1;
@@ -57,7 +57,7 @@ impl Circumstances {
 }
 
 /// Tells builds of one version apart: a new one may give other bytes.
-fn build() -> String {
+pub(super) fn build() -> String {
     let found = system::this_program().and_then(std::fs::metadata);
     let time = |data: &std::fs::Metadata| {
         let modified = data.modified().ok()?.duration_since(std::time::UNIX_EPOCH).ok()?;
@@ -76,10 +76,14 @@ struct Record {
     report: PartReport,
 }
 
-fn place(output: &Path) -> Option<PathBuf> {
-    let mut name = output.file_name()?.to_owned();
-    name.push(".json");
+/// The place of something that is kept about an output.
+pub(super) fn beside(output: &Path, extension: &str) -> Option<PathBuf> {
+    let name = format!("{}.{extension}", output.file_name()?.to_string_lossy());
     Some(output.parent()?.join(FOLDER).join(name))
+}
+
+fn place(output: &Path) -> Option<PathBuf> {
+    beside(output, "json")
 }
 
 /// What an earlier run reported of a part, when nothing has changed since.

@@ -205,8 +205,9 @@ impl Batch<'_> {
         let order = Order { task, memory, threads: self.run.limits.threads() };
         let mut report = match supervise(&order, self.run.limits.time, self.interrupt, hear) {
             Ok(Word::Ran(report)) => *report,
-            Ok(Word::Stage(stage)) => {
-                self.dead(at, &PartError::Crash { stage: Some(stage), words: String::new() })
+            Ok(_) => {
+                let words = "the worker gave the answer to another question".to_owned();
+                self.dead(at, &PartError::Crash { stage: None, words })
             }
             Err(error) => self.dead(at, &error),
         };
@@ -254,7 +255,7 @@ impl Batch<'_> {
             self.parts.iter().filter_map(|(part, _)| part.output.parent()).collect();
         for folder in folders {
             sweep(folder);
-            sweep(&folder.join(".resurf"));
+            sweep(&folder.join(record::FOLDER));
         }
     }
 }

@@ -5,6 +5,9 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::job::Job;
+use crate::job::file::ValidatorName;
+use crate::job::illustrate::Illustration;
+use crate::job::measured::Measures;
 use crate::job::plan::{self, Part, PlanError};
 use crate::job::read::{JobFileError, Syntax, read};
 use crate::job::report::PartReport;
@@ -67,6 +70,20 @@ pub(super) enum Task {
         /// Whether it writes.
         mode: Mode,
     },
+    /// Every number of a part.
+    Measure {
+        /// The part.
+        part: PathBuf,
+        /// Programs that are asked whether they accept it.
+        validators: Vec<ValidatorName>,
+    },
+    /// Pictures of a part before and after.
+    Illustrate {
+        /// The part.
+        part: Part,
+        /// Where its page goes.
+        page: PathBuf,
+    },
 }
 
 /// A task with what it may use.
@@ -87,4 +104,8 @@ pub(super) enum Word {
     Stage(Stage),
     /// It has done a part.
     Ran(Box<PartReport>),
+    /// It has measured a part, or could not: a code and a message.
+    Measured(Result<Measures, (String, String)>),
+    /// It has drawn a part, or could not.
+    Drawn(Result<Illustration, String>),
 }

@@ -4,7 +4,9 @@ use std::io::{BufRead, BufReader, Read, Write};
 
 use super::system;
 use super::task::{Order, Task, Word};
-use crate::job::failure::code;
+use crate::job::failure::{PartError, code};
+use crate::job::illustrate::illustrate;
+use crate::job::measured::measured;
 use crate::job::run::run_part;
 
 /// Longest order: a job's text and two paths.
@@ -40,6 +42,17 @@ pub fn work(input: impl Read + Send + 'static, output: &mut dyn Write) -> u8 {
             let mut watch = |stage| drop(say(&Word::Stage(stage)));
             let report = run_part(&job, &part, mode, &mut watch);
             say(&Word::Ran(Box::new(report)))
+        }
+        Task::Measure { part, validators } => {
+            let failed = |error: PartError| {
+                let failure = error.failure();
+                (failure.code, failure.message)
+            };
+            say(&Word::Measured(measured(&part, &validators).map_err(failed)))
+        }
+        Task::Illustrate { part, page } => {
+            let drawn = illustrate(&part.input, &part.output, &page);
+            say(&Word::Drawn(drawn.map_err(|error| error.to_string())))
         }
     };
     if said.is_ok() { code::DONE } else { code::IO }

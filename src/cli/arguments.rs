@@ -40,6 +40,11 @@ pub enum Command {
     Diff(DiffArguments),
     /// Write one self-contained HTML page that shows a part
     View(ViewArguments),
+    /// Measure the parts and jobs of a folder, and compare with a baseline
+    Regress(RegressArguments),
+    /// Put reports together
+    #[command(subcommand)]
+    Report(ReportCommand),
     /// Keep features for pastes without their parts
     #[command(subcommand)]
     Feature(FeatureCommand),
@@ -78,6 +83,12 @@ pub struct RunArguments {
     /// Write the report as JSON to a file as well
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
+    /// Write the report as JUnit XML
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
+    /// Write the report as one HTML page with pictures, and a page in three dimensions for each part into a folder beside it
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
     /// Do parts again that have not changed
     #[arg(long)]
     pub fresh: bool,
@@ -222,6 +233,62 @@ pub struct ViewArguments {
     /// Greatest distance of the triangles from the part: a number in file units, or with a unit
     #[arg(long, value_name = "LENGTH")]
     pub tolerance: Option<crate::units::Length>,
+}
+
+/// Arguments of `regress`.
+#[derive(Debug, Args)]
+pub struct RegressArguments {
+    /// Folder with parts and jobs
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+    /// What they measured before, in TOML
+    #[arg(long, value_name = "FILE")]
+    pub baseline: PathBuf,
+    /// Make what they measure now the baseline
+    #[arg(long)]
+    pub update: bool,
+    /// Ask these programs about every part
+    #[arg(long, value_delimiter = ',', value_name = "PROGRAMS")]
+    pub with: Vec<ValidatorName>,
+    /// Write JUnit XML
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
+    /// Write JSON
+    #[arg(long)]
+    pub json: bool,
+    /// What it may use
+    #[command(flatten)]
+    pub limits: LimitArguments,
+}
+
+/// The commands of `report`.
+#[derive(Debug, Subcommand)]
+pub enum ReportCommand {
+    /// Put the reports of the shares of a run together
+    Merge(MergeArguments),
+}
+
+/// Arguments of `report merge`.
+#[derive(Debug, Args)]
+pub struct MergeArguments {
+    /// Reports of all shares, JSON
+    #[arg(required = true, value_name = "REPORT")]
+    pub reports: Vec<PathBuf>,
+    /// Report to write, JSON
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Write JUnit XML
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
+    /// Write the report as one HTML page with pictures, and a page in three dimensions for each part into a folder beside it
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
+    /// Write the report as JSON to standard output
+    #[arg(long)]
+    pub json: bool,
+    /// What drawing the pictures may use
+    #[command(flatten)]
+    pub limits: LimitArguments,
 }
 
 /// The commands of `feature`.

@@ -13,13 +13,15 @@ mod inspect;
 mod manual;
 mod print;
 mod progress;
+mod regress;
+mod report;
 mod run;
 mod show;
 mod view;
 
 use clap::Parser;
 
-use arguments::{Arguments, Command, FeatureCommand, SchemaOf};
+use arguments::{Arguments, Command, FeatureCommand, ReportCommand, SchemaOf};
 use print::Printer;
 
 /// Runs the program with the process's arguments and gives its exit code.
@@ -41,6 +43,8 @@ pub fn main() -> u8 {
         Command::Inspect(arguments) => inspect::inspect(&arguments, &mut printer),
         Command::Check(arguments) => check::check(&arguments, &mut printer),
         Command::Diff(arguments) => diff::diff(&arguments, &mut printer),
+        Command::Regress(arguments) => regress::regress(&arguments, &mut printer),
+        Command::Report(ReportCommand::Merge(arguments)) => report::merge(&arguments, &mut printer),
         Command::View(arguments) => view::view(&arguments, &mut printer),
         Command::Feature(FeatureCommand::Export(arguments)) => feature::export(&arguments, &mut printer),
         Command::Feature(FeatureCommand::Detail(arguments)) => feature::detail(&arguments, &mut printer),

@@ -6,12 +6,12 @@ use super::arguments::RunArguments;
 use super::exit_code;
 use super::print::{Place, Printer};
 use super::progress::Display;
+use super::report::Forms;
 use crate::batch::run::Memory;
 use crate::batch::task::JobError;
 use crate::batch::{self, Interrupt, JobText, Run};
 use crate::diagnostic::Severity;
 use crate::job::judge::first_missing;
-use crate::job::output::Staged;
 use crate::job::plan::{self, Part};
 use crate::job::read::JobFileError;
 use crate::job::report::{PartReport, Report, WritePath};
@@ -20,17 +20,17 @@ use crate::job::run::Mode;
 /// Runs a job and gives the exit code.
 pub fn run(arguments: &RunArguments, printer: &mut Printer) -> u8 {
     match done(arguments, printer) {
-        Ok(report) => {
+        Ok((report, interrupt)) => {
             summary(printer, &report.parts);
-            let written = write_report(arguments, &report, printer);
+            let written = write_report(arguments, &report, &interrupt, printer);
             if written == exit_code::DONE { report.code } else { written }
         }
         Err(code) => code,
     }
 }
 
-/// The report of the run, or the exit code after a message.
-fn done(arguments: &RunArguments, printer: &mut Printer) -> Result<Report, u8> {
+/// The report of the run with what may end it, or the exit code after a message.
+fn done(arguments: &RunArguments, printer: &mut Printer) -> Result<(Report, Interrupt), u8> {
     let (text, parts) = planned(&arguments.job, printer)?;
     let job = text.job().map_err(|error| show_job_error(printer, &arguments.job, &text, &error))?;
     let mut refuse = |message: &str, code: u8| {
@@ -58,7 +58,8 @@ fn done(arguments: &RunArguments, printer: &mut Printer) -> Result<Report, u8> {
     let mut display = Display::new(printer, arguments.limits.verbose, line);
     let report = batch::run(&run, &interrupt, &mut |progress| display.show(progress));
     display.end();
-    report.map_err(|error| show_job_error(printer, &arguments.job, &text, &error))
+    let report = report.map_err(|error| show_job_error(printer, &arguments.job, &text, &error))?;
+    Ok((report, interrupt))
 }
 
 /// The job's text and its parts, or the exit code after a message.
@@ -133,23 +134,18 @@ fn summary(printer: &mut Printer, parts: &[PartReport]) {
     printer.line(&text);
 }
 
-fn write_report(arguments: &RunArguments, report: &Report, printer: &mut Printer) -> u8 {
-    let text = match report.text() {
-        Ok(text) => text,
-        Err(error) => {
-            printer.message(Severity::Error, &format!("the report cannot be written: {error}"));
-            return exit_code::INTERNAL;
-        }
+/// Writes the report in every form that is asked for.
+fn write_report(
+    arguments: &RunArguments,
+    report: &Report,
+    interrupt: &Interrupt,
+    printer: &mut Printer,
+) -> u8 {
+    let forms = Forms {
+        report: arguments.report.as_deref(),
+        junit: arguments.junit.as_deref(),
+        html: arguments.html.as_deref().filter(|_| !arguments.dry_run),
+        json: arguments.json,
     };
-    if let Some(path) = &arguments.report {
-        let written = Staged::write(path, text.as_bytes()).and_then(Staged::commit);
-        if let Err(error) = written {
-            printer.message(Severity::Error, &format!("the report cannot be written: {error}"));
-            return exit_code::IO;
-        }
-    }
-    if arguments.json {
-        printer.data(&text);
-    }
-    exit_code::DONE
+    forms.write(report, &arguments.limits.limits(), interrupt, printer)
 }

@@ -25,7 +25,7 @@ pub(super) fn differences(before: &Side<'_>, after: &Side<'_>, pairs: &[Pair]) -
         let (a, b) = (&before.faces[pair.before], &after.faces[pair.after]);
         for (what, word) in WORDS {
             let (was, is) = (word(before, a), word(after, b));
-            if was != is {
+            if was != is && !(what == "colour" && are_near(colour_of(before, a), colour_of(after, b))) {
                 let first = after.model.origins.faces[b.face].to_string();
                 found.entry((what, was, is)).or_insert((0, first)).0 += 1;
             }
@@ -44,11 +44,24 @@ fn name(side: &Side<'_>, face: &PlacedFace) -> String {
 }
 
 fn colour(side: &Side<'_>, face: &PlacedFace) -> String {
-    let placed = &side.instances.bodies[face.placed];
-    side.instances.colour(side.model, placed, face.face).map(hex).unwrap_or_default()
+    colour_of(side, face).map(hex).unwrap_or_default()
 }
 
-/// Two hexadecimal digits of each part: files write colours with as few as two decimals.
+fn colour_of(side: &Side<'_>, face: &PlacedFace) -> Option<Colour> {
+    side.instances.colour(side.model, &side.instances.bodies[face.placed], face.face)
+}
+
+/// Part of the range of a colour's parts within which two are one: files write them with as few as two decimals.
+const ONE_COLOUR: f64 = 0.006;
+
+fn are_near(a: Option<Colour>, b: Option<Colour>) -> bool {
+    a.zip(b).is_some_and(|(a, b)| {
+        let parts = [(a.red, b.red), (a.green, b.green), (a.blue, b.blue)];
+        parts.iter().all(|(a, b)| (a - b).abs() <= ONE_COLOUR)
+    })
+}
+
+/// Two hexadecimal digits of each part.
 fn hex(colour: Colour) -> String {
     let part = |part: f64| (part.clamp(0.0, 1.0) * 255.0).round() as u8;
     format!("#{:02x}{:02x}{:02x}", part(colour.red), part(colour.green), part(colour.blue))

@@ -60,17 +60,17 @@ impl<'a> Target<'a> {
         // are what is nearest.
         let away = match to_surface {
             Some(away) if to_triangles <= away + self.chord => away.max(0.0),
-            _ => self.from_bounds(&local).min(to_triangles),
+            _ => self.to_bounds(&local).min(to_triangles),
         };
         away * self.scale
     }
 
     /// Whether a point of a bound lies on a bound of this face.
     pub(super) fn bound_distance(&self, point: &Point3<f64>) -> f64 {
-        self.from_bounds(&self.inverse.point(point)) * self.scale
+        self.to_bounds(&self.inverse.point(point)) * self.scale
     }
 
-    fn from_bounds(&self, local: &Point3<f64>) -> f64 {
+    fn to_bounds(&self, local: &Point3<f64>) -> f64 {
         self.edges.iter().map(|edge| edge.distance(local)).fold(f64::INFINITY, f64::min)
     }
 }

@@ -254,7 +254,7 @@ impl<'a> Deviations<'a> {
             faces.entry(placed.face).or_insert_with(|| {
                 let differs = pair.kin == Kin::Differing;
                 let target = differs.then(|| distance::Target::new(before, &before.faces[pair.before]));
-                (placed.transform.clone(), target)
+                (placed.transform, target)
             });
         }
         Self { faces }

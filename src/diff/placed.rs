@@ -10,6 +10,9 @@ use crate::mesh::{Mesh, Tolerances, tessellate_faces};
 use crate::model::{Instances, Model, PlacedBody};
 use crate::units::LengthUnit;
 
+/// Something of each face and of points on it, in its body's coordinates.
+pub type OverFace<'a, T> = dyn Fn(FaceId, &[Point3<f64>]) -> T + 'a;
+
 /// One of the two models.
 #[derive(Debug)]
 pub struct Side<'a> {
@@ -80,12 +83,31 @@ impl<'a> Side<'a> {
             let count = vertices().count().max(1) as f64;
             Point3::from(vertices().map(|p| p.coords).sum::<crate::math::Vector3<f64>>() / count)
         };
-        PlacedFace { face, placed, transform: transform.clone(), area, middle, bounds }
+        PlacedFace { face, placed, transform: *transform, area, middle, bounds }
     }
 
     /// Its triangles in the body's coordinates; `None` where it has none.
     pub(super) fn mesh(&self, face: &PlacedFace) -> Option<&Mesh> {
         self.meshes.get(&face.face)
+    }
+
+    /// Triangles of everything at its place, with the face of each triangle.
+    #[must_use]
+    pub fn whole_mesh(&self) -> Mesh {
+        let mut whole = Mesh::default();
+        for face in &self.faces {
+            if let Some(mesh) = self.mesh(face) {
+                whole.append(&mesh.transformed(&face.transform));
+            }
+        }
+        whole
+    }
+
+    /// A number at each vertex of [`whole_mesh`](Self::whole_mesh): `values` gets a face and points in its body's coordinates.
+    #[must_use]
+    pub fn over_whole_mesh(&self, values: &OverFace<Vec<f64>>) -> Vec<f64> {
+        let meshes = self.faces.iter().filter_map(|face| Some((face.face, self.mesh(face)?)));
+        meshes.flat_map(|(face, mesh)| values(face, &mesh.vertices)).collect()
     }
 
     /// How its file names it.

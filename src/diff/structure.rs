@@ -15,9 +15,12 @@ pub struct StructureChange {
     pub message: String,
 }
 
+/// Something of a model that is counted by name.
+type CountsOf = fn(&Model) -> BTreeMap<String, usize>;
+
 pub(super) fn differences(before: &Model, after: &Model) -> Vec<StructureChange> {
     let mut changes = Vec::new();
-    let counted: [(&'static str, fn(&Model) -> BTreeMap<String, usize>); 4] =
+    let counted: [(&'static str, CountsOf); 4] =
         [("product", products), ("unit", units), ("annotation", annotations), ("body", bodies)];
     for (what, count) in counted {
         let (a, b) = (count(before), count(after));

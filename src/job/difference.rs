@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::run::program;
 use crate::diff::{self, Change, Deviations, Difference, FaceChange, Named, Side};
 use crate::math::BoundingBox;
+use crate::mesh::Mesh;
 use crate::model::Model;
 use crate::units::{Length, LengthUnit};
 use crate::view::{Overlay, Page, page_with};
@@ -34,6 +35,21 @@ impl<'a> Compared<'a> {
             tolerance.map_or_else(|| default_tolerance(&before, &after), |length| length.in_unit(&unit));
         let difference = diff::compare(&before, &after, tolerance);
         Self { before, after, difference }
+    }
+
+    /// Triangles of both parts, in the unit of the first.
+    #[must_use]
+    pub fn meshes(&self) -> (Mesh, Mesh) {
+        (self.before.whole_mesh(), self.after.whole_mesh())
+    }
+
+    /// The distance from the first part at each vertex of the second one's triangles; 0 on faces that are only there.
+    #[must_use]
+    pub fn distances(&self) -> Vec<f64> {
+        let deviations = Deviations::new(&self.before, &self.after, &self.difference);
+        self.after.over_whole_mesh(&|face, points| {
+            deviations.of(face, points).unwrap_or_else(|| vec![0.0; points.len()])
+        })
     }
 
     /// A page that shows the second part with the distances from the first as colours.

@@ -4,8 +4,8 @@
 //! something happened which did not. The JSON Schema under `schemas/` is generated from these types.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
 use serde::de;
+use serde::{Deserialize, Serialize};
 
 pub use super::detail_file::DetailTransfer;
 pub use super::paste_file::FeaturePaste;
@@ -188,7 +188,9 @@ impl TryFrom<f64> for Seconds {
 }
 
 /// A program that can be asked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize, JsonSchema, clap::ValueEnum)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema, clap::ValueEnum,
+)]
 #[serde(rename_all = "lowercase")]
 #[value(rename_all = "lowercase")]
 pub enum ValidatorName {

@@ -116,7 +116,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn point() -> impl Strategy<Value = Point3<f64>> {
-        [-10.0..10.0, -10.0..10.0, -10.0..10.0f64].prop_map(|p| Point3::from(p))
+        [-10.0..10.0, -10.0..10.0, -10.0..10.0f64].prop_map(Point3::from)
     }
 
     proptest! {

@@ -31,14 +31,17 @@ pub struct Page {
 /// Placed bodies of one page at most: beyond that no browser follows.
 pub const MOST_BODIES: usize = 20_000;
 
+/// Numbers at points of a face in its body's coordinates; `None` for a face that is shown as new.
+pub type ValuesOf<'a> = dyn Fn(FaceId, &[Point3<f64>]) -> Option<Vec<f64>> + 'a;
+
 /// Numbers over the faces of a page, and words about them.
 pub struct Overlay<'a> {
     /// What the numbers are, with their unit.
     pub label: String,
     /// The number that gets the full colour, positive.
     pub most: f64,
-    /// Numbers at points of a face in its body's coordinates; `None` for a face that is shown as new.
-    pub values: &'a dyn Fn(FaceId, &[Point3<f64>]) -> Option<Vec<f64>>,
+    /// The numbers.
+    pub values: &'a ValuesOf<'a>,
     /// What is told of a face when it is picked.
     pub notes: BTreeMap<String, Vec<String>>,
     /// Lines about the whole.

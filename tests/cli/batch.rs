@@ -123,7 +123,7 @@ fn a_second_run_does_only_what_has_changed() {
 #[test]
 fn one_worker_and_two_give_the_same_bytes() {
     let job = "version = 1\ninputs = [\"*.step\"]\noutput = \"out/{stem}.{ext}\"\nalso = [\"stl\"]\n\
-        [[operation]]\nkind = \"constrained_scale\"\nfactors = [1.1, 1.2, 1.25]\nhold = [{ loops = \"inner\" }]\n";
+        [[operation]]\nkind = \"constrained_scale\"\nfactors = [1.1, 1.2, 1.25]\n";
     let run = |jobs: &str| {
         let fixture = Fixture::new().file("job.toml", job);
         let fixture =
@@ -155,6 +155,18 @@ fn shares_cover_the_parts_and_merge_into_one_report() {
     let [one, two] = ["1.json", "2.json"].map(|name| outcomes(&json(&fixture, name)));
     assert_eq!((one.len(), two.len()), (2, 2));
 
+    let said = fixture.run(&["report", "merge", "2.json", "1.json", "-o", "all.json", "--junit", "all.xml"]);
+    assert!(said.starts_with("exit code: 0\n"), "{said}");
+    assert_eq!(outcomes(&json(&fixture, "all.json")).len(), 4);
+    let junit = std::fs::read_to_string(fixture.path("all.xml")).expect("written");
+    assert!(junit.contains("tests=\"4\" failures=\"0\" errors=\"0\""), "{junit}");
+    for (reports, words) in [
+        (&["1.json"][..], "the reports of shares 2 of 2 are missing"),
+        (&["1.json", "1.json"], "share 1 stands in two reports"),
+    ] {
+        let said = fixture.run(&[&["report", "merge"], reports].concat());
+        assert!(said.starts_with("exit code: 2\n") && said.contains(words), "{said}");
+    }
     let said = run("auto/2", "3.json");
     assert!(said.starts_with("exit code: 2\n") && said.contains("JOB_COMPLETION_INDEX"), "{said}");
     let fixture = fixture.variable("JOB_COMPLETION_INDEX", "1");
@@ -199,6 +211,8 @@ fn an_interrupted_run_ends_at_once_and_goes_on_later() {
         .args(["run", "job.toml", "--jobs", "2", "--report", "r.json", "--timeout", "90"])
         .current_dir(fixture.path(""))
         .env("RESURF_FREECADCMD", fixture.path("judge"))
+        // The date is an input as well.
+        .env("SOURCE_DATE_EPOCH", "0")
         .stderr(Stdio::null())
         .spawn()
         .expect("the program starts");

@@ -2,7 +2,9 @@
 
 mod accepted;
 mod batch;
+mod cluster;
 mod detail;
+mod diff;
 mod jobs;
 mod locality;
 mod parts;
@@ -10,6 +12,7 @@ mod paste;
 mod paste_corpus;
 mod paste_targets;
 mod patho;
+mod regress;
 #[path = "../support/mod.rs"]
 #[allow(dead_code, reason = "shared with other test binaries")]
 mod support;
