@@ -8,9 +8,10 @@ use serde::{Deserialize, Serialize};
 use super::failure::PartError;
 use super::file::{ValidateSettings, ValidatorName};
 use super::judge::judge;
-use super::measure::{BodyMeasures, Figures, measure_bodies};
+use super::measure::{BodyMeasures, Figures, measure_bodies_by};
 use super::own_check::own_findings;
 use super::part::Read;
+use crate::brep::mass_properties::Quadrature;
 
 /// A measure.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -51,7 +52,7 @@ pub fn measured(path: &Path, validators: &[ValidatorName]) -> Result<Measures, P
         put("extents.min".to_owned(), Measure::Point(least));
         put("extents.max".to_owned(), Measure::Point(greatest));
     }
-    let bodies = measure_bodies(&model);
+    let bodies = measure_bodies_by(&model, Quadrature::good);
     whole(&bodies).into_iter().for_each(|(name, measure)| put(name.to_owned(), measure));
     let mut checks: BTreeMap<String, usize> = BTreeMap::new();
     for finding in own_findings(&read.document, &model, 1.0) {

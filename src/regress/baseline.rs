@@ -60,7 +60,7 @@ impl Tolerances {
 
 impl Default for Tolerances {
     fn default() -> Self {
-        Self { volume: 1e-9, area: 1e-9, centroid: 1e-9, extents: 1e-12, seconds: 5.0 }
+        Self { volume: 1e-6, area: 1e-6, centroid: 1e-6, extents: 1e-12, seconds: 5.0 }
     }
 }
 

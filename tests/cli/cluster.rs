@@ -27,7 +27,15 @@ fn snakemake(fixture: &Fixture) -> Option<Output> {
     let output = Command::new(program)
         .arg("--snakefile")
         .arg(sample)
-        .args(["--cores", "2", "--rerun-incomplete", "--config", "job=job.toml", "shares=3", "resurf=./resurf"])
+        .args([
+            "--cores",
+            "2",
+            "--rerun-incomplete",
+            "--config",
+            "job=job.toml",
+            "shares=3",
+            "resurf=./resurf",
+        ])
         .current_dir(fixture.path(""))
         .env("HOME", fixture.path(""))
         .output();
@@ -43,11 +51,14 @@ fn a_workflow_goes_on_after_a_job_was_killed() {
     use std::os::unix::fs::PermissionsExt;
     let door = include_str!("../../samples/door/door.step");
     let job = "version = 1\ninputs = [\"parts/*.step\"]\noutput = \"out/{stem}.step\"\n";
-    let part = |n: usize| door.replacen("ISO-10303-21;", &format!("ISO-10303-21;/*{n}*/"), 1) + &" ".repeat(n);
-    let fixture = (0..6).fold(Fixture::new().file("job.toml", job), |f, n| f.file(&format!("parts/{n}.step"), part(n)));
+    let part =
+        |n: usize| door.replacen("ISO-10303-21;", &format!("ISO-10303-21;/*{n}*/"), 1) + &" ".repeat(n);
+    let fixture =
+        (0..6).fold(Fixture::new().file("job.toml", job), |f, n| f.file(&format!("parts/{n}.step"), part(n)));
     let program = assert_cmd::cargo::cargo_bin!("resurf").display().to_string();
     let fixture = fixture.file("resurf", KILLER.replace("PROGRAM", &program));
-    std::fs::set_permissions(fixture.path("resurf"), std::fs::Permissions::from_mode(0o755)).expect("a script");
+    std::fs::set_permissions(fixture.path("resurf"), std::fs::Permissions::from_mode(0o755))
+        .expect("a script");
 
     let Some(first) = snakemake(&fixture) else { return };
     let said = String::from_utf8_lossy(&first.stderr).into_owned();
@@ -62,7 +73,10 @@ fn a_workflow_goes_on_after_a_job_was_killed() {
     let report: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     assert_eq!((report["code"].as_u64(), report["parts"].as_array().map(Vec::len)), (Some(0), Some(6)));
     for n in 0..6 {
-        assert_eq!(std::fs::read_to_string(fixture.path(&format!("out/{n}.step"))).expect("an output"), part(n));
+        assert_eq!(
+            std::fs::read_to_string(fixture.path(&format!("out/{n}.step"))).expect("an output"),
+            part(n)
+        );
     }
     // Three attempts of the first run and one of the second.
     assert_eq!(std::fs::read_to_string(fixture.path("kills")).expect("a count").lines().count(), 4);
