@@ -206,12 +206,6 @@ impl Document {
         Some(self.source().position(instance.span().start).line)
     }
 
-    /// Records that state volume, area or centroid of a part, as the file names them: a change makes them stale.
-    #[must_use]
-    pub fn validation_properties(&self) -> Vec<String> {
-        step::validation_properties(&self.structure).iter().map(ToString::to_string).collect()
-    }
-
     /// What the file means.
     pub fn model(&self, sink: &mut dyn Sink) -> Model {
         self.structure.unresolved_references(sink);

@@ -10,16 +10,18 @@ use serde::{Deserialize, Serialize};
 
 use super::failure::PartError;
 use super::file::{Job, Operation};
+use super::flagged::flagged;
 use super::judge;
 use super::measure::Figures;
 use super::operate::operate;
 use super::output::Staged;
-use super::own_check::{OwnFinding, findings_of_faces, new_findings, touched};
+use super::own_check::{OwnFinding, changed_faces, findings_of_faces, new_findings, with_neighbours};
 use super::part::Read;
 use super::plan::Part;
 use super::report::{DiagnosticReport, Edits, PartReport, Status, WritePath};
-use crate::document::Stamp;
-use crate::model::{Balance, ChangeSet, Model, Origin};
+use super::restate::{self, Outcome, restated};
+use crate::document::{Document, Stamp};
+use crate::model::{AnnotationKind, Balance, ChangeSet, Model, Origin};
 
 /// Whether a run writes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -172,6 +174,7 @@ fn changed_bytes(
     let mut balance = Balance::default();
     let mut bytes: Option<Vec<u8>> = None;
     let mut faces: BTreeSet<Origin> = BTreeSet::new();
+    let mut concerned = restate::Changed::default();
     for (at, operation) in job.operation.iter().enumerate() {
         let kind = operation.kind().to_owned();
         watch(Stage::Operation { number: at + 1, of: job.operation.len(), kind });
@@ -188,17 +191,17 @@ fn changed_bytes(
         report.edits = Some(report.edits.map_or(edits, |before| before.followed_by(&edits)));
         if !patch.is_empty() {
             count_kinds(&mut surfaces, model, &changes);
-            faces.extend(touched(model, &changes));
+            let changed = changed_faces(model, &changes);
+            concerned.add(model, &changed);
+            faces.extend(with_neighbours(model, changed));
             balance.add(Balance::of(model, &changes));
             bytes = Some(patch.apply(document.source().bytes()));
         }
     }
-    if bytes.is_none() {
-        return Ok(Changed::default());
-    }
+    let Some(bytes) = bytes else { return Ok(Changed::default()) };
     report.write_path = Some(WritePath::Patched);
-    let stale = read.document.validation_properties();
-    report.losses.extend(stale.iter().map(|entity| stale_property(entity)));
+    let bytes = Some(state_anew(bytes, part, &model, &concerned, stamp, report)?);
+    report.losses.extend(flagged(&read.document, &model, &concerned));
     let findings = findings_of_faces(&read.document, &model, &faces, 1.0);
     let known = model.origins.faces.iter().map(|(_, origin)| *origin).collect();
     Ok(Changed { bytes, touched: faces, known, findings, surfaces, balance })
@@ -211,6 +214,52 @@ fn read_between(bytes: &[u8], part: &Part) -> Result<(Read, Model), PartError> {
     let model = read.model();
     read.refuse_errors()?;
     Ok((read, model))
+}
+
+/// States anew what the file says of the changed shape.
+fn state_anew(
+    bytes: Vec<u8>,
+    part: &Part,
+    before: &Model,
+    concerned: &restate::Changed,
+    stamp: &Stamp,
+    report: &mut PartReport,
+) -> Result<Vec<u8>, PartError> {
+    if !before.annotations.iter().any(|a| a.kind == AnnotationKind::ValidationProperty) {
+        return Ok(bytes);
+    }
+    let (read, after) = read_between(&bytes, part)?;
+    let (changes, told) = restated(before, &after, concerned);
+    report.restated = told;
+    let patch = read.document.lower(&after, &changes, stamp)?;
+    if patch.is_empty() {
+        return Ok(bytes);
+    }
+    let edits: Edits = patch.counts().into();
+    report.edits = Some(report.edits.map_or(edits, |before| before.followed_by(&edits)));
+    Ok(patch.apply(&bytes))
+}
+
+/// Tells what became of statements about the shape: what was to go may still stand there.
+fn tell_restated(document: &Document, report: &mut PartReport) {
+    for told in &mut report.restated {
+        let line = told.origin.and_then(|origin| document.line_of(origin));
+        if told.outcome == Outcome::Removed && line.is_some() {
+            told.was_kept();
+        }
+        let what = match told.outcome {
+            Outcome::Recomputed if told.reason.is_none() => continue,
+            Outcome::Recomputed => ("validation-property.stale", "is stated anew but for a part"),
+            Outcome::Removed => ("validation-property.removed", "is stated no more"),
+            Outcome::Kept => ("validation-property.stale", "is stated as it was before the change"),
+        };
+        let reason = told.reason.as_deref().unwrap_or_default();
+        report.losses.push(DiagnosticReport {
+            entity: Some(told.entity.clone()),
+            line,
+            ..DiagnosticReport::warning(what.0, format!("'{}' {}: {reason}", told.name, what.1))
+        });
+    }
 }
 
 /// Counts of surfaces by kind, as a change set will leave them.
@@ -255,6 +304,7 @@ fn read_again(
         }
     }
     if report.write_path == Some(WritePath::Patched) {
+        tell_restated(&read.document, report);
         // Of the operations, not of the part's box: a part of an assembly may grow while the box stays.
         let growth = job.operation.iter().map(Operation::growth).product();
         let new = model.origins.faces.iter().map(|(_, origin)| *origin);
@@ -294,14 +344,6 @@ fn side_files(
 fn chord(job: &Job, model: &Model) -> Result<Option<f64>, PartError> {
     let wanted = job.tolerance.length.filter(|_| !job.also.is_empty());
     wanted.map(|length| judge::chord(model, length.0, "tolerance.length")).transpose()
-}
-
-fn stale_property(entity: &str) -> DiagnosticReport {
-    let message = "states a validation property of the part before the change; it is kept as it was";
-    DiagnosticReport {
-        entity: Some(entity.to_owned()),
-        ..DiagnosticReport::warning("validation-property.stale", message.to_owned())
-    }
 }
 
 /// Greatest resident memory of the process, where Linux tells.
