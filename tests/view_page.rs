@@ -297,5 +297,7 @@ fn the_page_of_a_difference_is_red_where_it_is_greatest() {
     assert!(right > 200 && right > 2 * left, "{counts}");
     browser.click_on("button", "Colours");
     browser.script("draw();");
-    assert_eq!(browser.script(reds), json!([0, 0]));
+    // Its own colour is red all over.
+    let own = browser.script(reds);
+    assert!(own[0].as_u64() > Some(10 * left), "{own}");
 }

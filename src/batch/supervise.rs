@@ -18,6 +18,9 @@ pub const WORKER: &str = "worker";
 /// How often a waiting run looks whether it was interrupted.
 const LOOK: Duration = Duration::from_millis(50);
 
+/// Time that a worker may take to end after it closed its output.
+const SETTLING: Duration = Duration::from_secs(5);
+
 /// Bytes kept of a worker's last words.
 const KEPT: usize = 4096;
 
@@ -40,11 +43,15 @@ pub(super) fn supervise(
     let mut stage = None;
     let answer = loop {
         match worker.words.recv_timeout(LOOK) {
-            Ok(Word::Stage(next)) => {
+            Ok(Ok(Word::Stage(next))) => {
                 hear(&next);
                 stage = Some(next);
             }
-            Ok(answer) => break Some(answer),
+            Ok(Ok(answer)) => break Some(answer),
+            Ok(Err(error)) => {
+                worker.end();
+                return Err(PartError::Crash { stage, words: format!("the answer cannot be read: {error}") });
+            }
             Err(RecvTimeoutError::Disconnected) => break None,
             Err(RecvTimeoutError::Timeout) => {}
         }
@@ -70,7 +77,7 @@ pub(super) fn supervise(
 /// A process at work.
 struct Worker {
     child: Child,
-    words: Receiver<Word>,
+    words: Receiver<Result<Word, serde_json::Error>>,
     last_words: JoinHandle<String>,
 }
 
@@ -90,9 +97,8 @@ impl Worker {
         let (tell, words) = channel();
         if let Some(output) = child.stdout.take() {
             std::thread::spawn(move || {
-                for line in BufReader::new(output).lines() {
-                    let word = line.ok().and_then(|line| serde_json::from_str(&line).ok());
-                    if word.is_none_or(|word| tell.send(word).is_err()) {
+                for line in BufReader::new(output).lines().map_while(Result::ok) {
+                    if tell.send(serde_json::from_str(&line)).is_err() {
                         break;
                     }
                 }
@@ -135,8 +141,16 @@ impl Worker {
 
     /// How it ended by itself; a process that closed its output has little time left to.
     fn settled(&mut self) -> Option<ExitStatus> {
-        use wait_timeout::ChildExt;
-        self.child.wait_timeout(Duration::from_secs(5)).ok().flatten()
+        // Not by waiting, which closes its input: a worker whose input is closed ends itself.
+        let deadline = Instant::now() + SETTLING;
+        while Instant::now() < deadline {
+            match self.child.try_wait() {
+                Ok(None) => std::thread::sleep(Duration::from_millis(5)),
+                Ok(status) => return status,
+                Err(_) => return None,
+            }
+        }
+        None
     }
 }
 

@@ -123,7 +123,7 @@ pub struct PartReport {
     /// Operations with what they measured.
     pub operations: Vec<OperationReport>,
     /// What became of statements about volume, area and centroid of changed bodies.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub restated: Vec<super::restate::Restated>,
     /// What the file cannot say any more, by code.
     pub losses: Vec<DiagnosticReport>,
@@ -284,5 +284,18 @@ impl PartReport {
             diagnostics.kept().iter().map(|fact| DiagnosticReport::new(fact, source)).collect();
         self.diagnostic_counts =
             diagnostics.counts().iter().map(|(code, count)| ((*code).to_owned(), *count)).collect();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_report_with_nothing_in_it_is_read_again() {
+        // Workers answer with it, and records keep it: a field that is left out when empty must be read as empty.
+        let report = PartReport::new("a.step".to_owned(), "b.step".to_owned());
+        let text = serde_json::to_string(&report).expect("a tree of texts and numbers");
+        assert_eq!(serde_json::from_str::<PartReport>(&text).expect("the same form"), report);
     }
 }

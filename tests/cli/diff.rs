@@ -227,3 +227,31 @@ fn a_lifted_control_point_lifts_the_surface_by_less_and_the_proof_lies_between()
     assert!(sampled > 0.5 * 0.19 && sampled <= certified * (1.0 + 1e-9), "{sampled} and {certified}");
     assert!(certified <= 0.5 * 1.06, "{certified}");
 }
+
+/// Parts written again by Open CASCADE (OCP 8): other records, other order, other digits, the same geometry. Needs a Python
+/// with OCP, in `PATH` or named by `RESURF_OCC_PYTHON`; silent without one, unless `RESURF_REQUIRE_OCC=1`.
+#[test]
+fn what_open_cascade_writes_again_has_the_same_geometry() {
+    use std::process::Command;
+    let python = std::env::var_os("RESURF_OCC_PYTHON").unwrap_or_else(|| "python3".into());
+    let can =
+        Command::new(&python).args(["-c", "import OCP"]).output().is_ok_and(|output| output.status.success());
+    let required = std::env::var_os("RESURF_REQUIRE_OCC").is_some_and(|value| value == "1");
+    assert!(can || !required, "no OCP");
+    if !can {
+        return;
+    }
+    let samples = ["assembly/assembly.step", "wheel/wheel.step", "vamp/vamp.step", "wheel/cone.step"];
+    let fixture = samples.iter().fold(Fixture::new(), |f, name| f.sample(name));
+    let names: Vec<&str> = samples.iter().filter_map(|name| name.rsplit('/').next()).collect();
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cli/reexport.py");
+    let pairs = names.iter().flat_map(|name| [(*name).to_owned(), format!("again-{name}")]);
+    let output =
+        Command::new(python).arg(script).args(pairs).current_dir(fixture.path("")).output().expect("python");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    for name in names {
+        let (difference, code) = diff(&fixture, &[name, &format!("again-{name}"), "--only", "geometry"]);
+        assert_eq!(code, 0, "{name}: {difference:#}");
+        assert!(difference["faces"]["same"].as_u64() > Some(0), "{name}: nothing was written in another way");
+    }
+}
