@@ -11,6 +11,7 @@
 pub mod batch;
 pub mod brep;
 pub mod cli;
+pub mod cloud;
 pub mod diagnostic;
 pub mod diff;
 pub mod document;
