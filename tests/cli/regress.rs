@@ -110,3 +110,37 @@ fn a_baseline_that_is_none_is_placed() {
     let said = fixture.run(&["regress", "nowhere", "--baseline", "base2.toml", "--update"]);
     assert!(said.starts_with("exit code: 2\n"), "{said}");
 }
+
+#[test]
+fn the_night_of_the_samples_is_one_command() {
+    use std::process::Command;
+    let samples = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("samples");
+    let names = [
+        "nightly/night.toml",
+        "nightly/baseline.toml",
+        "nightly/nightly",
+        "plate/plate.step",
+        "wheel/wheel.step",
+        "vamp/vamp.step",
+    ];
+    let fixture = names.iter().fold(Fixture::new(), |fixture, name| {
+        fixture.file(name, std::fs::read(samples.join(name)).expect("a sample"))
+    });
+    let night = || {
+        let output = Command::new("sh")
+            .arg(fixture.path("nightly/nightly"))
+            .env("RESURF", assert_cmd::cargo::cargo_bin!("resurf"))
+            .output()
+            .expect("a shell");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    let said = night();
+    assert!(said.contains("3 parts: 3 done, 0 failed") && said.contains("3 parts: 0 differ"), "{said}");
+    for name in
+        ["report.html", "report.json", "report.xml", "regress.xml", "report-parts/0001-plate-mould.html"]
+    {
+        assert!(fixture.path("nightly/out").join(name).is_file(), "{name}");
+    }
+    assert!(night().contains("nothing was done"));
+}
