@@ -27,6 +27,8 @@ pub mod plan;
 pub mod read;
 pub mod report;
 pub mod run;
+pub mod scale_file;
+mod scale_operate;
 pub mod schema;
 pub mod select;
 mod select_curve;

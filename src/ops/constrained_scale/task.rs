@@ -69,7 +69,9 @@ pub struct Group {
 pub struct Scaled {
     /// One for each task, in order.
     pub faces: Vec<ScaledFace>,
-    /// Groups in the order of their first loops.
+    /// The caller's numbers of the groups that had to be joined, or stayed alone, in the order of their first loops.
+    pub sets: Vec<Vec<usize>>,
+    /// One for each motion of the rule.
     pub groups: Vec<Group>,
     /// Greatest relative residual of the stationarity conditions: of the free points, and of the groups' motions.
     pub residual: f64,

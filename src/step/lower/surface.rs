@@ -177,7 +177,7 @@ impl Lowering<'_> {
         surface: &Surface,
         radians: f64,
     ) -> Result<Body, LowerError> {
-        let inherited = self.inherited_by_surface(old);
+        let inherited = self.inherited_by_surface(old, surface);
         Ok(match surface {
             Surface::Plane(frame) => self.elementary("PLANE", &inherited, frame, &[])?,
             Surface::Cylinder { frame, radius } => {
