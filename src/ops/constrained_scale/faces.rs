@@ -13,6 +13,7 @@ use super::prepare::prepare;
 use super::refine::Refined;
 use super::rule::{Arrangement, ByLoops, MotionRule};
 use super::scaling::{Hold, Scaling};
+use super::skins;
 use super::solve::choose_amounts;
 use super::stage::{Residual, finish, held_sets, stage};
 use super::task::{Contour, FaceTask, Group, HeldLoop, Scaled, ScaledFace};
@@ -75,19 +76,31 @@ fn run(
         return unchanged(tasks, &grouping, rule);
     }
     let mut least = vec![0; faces.len()];
+    let mut parted = false;
     loop {
         let refined = refine_together(faces, &mut grouping, &mut least, scaling)?;
         let arrangement = rule.arrange(&grouping.sets())?;
-        let solved = solve(tasks, faces, refined, &grouping, arrangement, scaling, plain)?;
-        let Some(folded) = solved.faces.iter().position(|f| f.compression.is_fold()) else {
-            return Ok(solved);
-        };
+        let mut solved = solve(tasks, faces, refined, &grouping, arrangement, scaling, plain)?;
         // One more level gives the stretched part more room, as long as the limit allows.
-        let Compression { ratio, near } = solved.faces[folded].compression;
-        if solved.faces[folded].level < least[folded] {
-            return Err(ScaleError::FoldOver { face: faces[folded].name.clone(), ratio, near });
+        if let Some(folded) = solved.faces.iter().position(|f| f.compression.is_fold()) {
+            let Compression { ratio, near } = solved.faces[folded].compression;
+            if solved.faces[folded].level < least[folded] {
+                return Err(ScaleError::FoldOver { face: faces[folded].name.clone(), ratio, near });
+            }
+            least[folded] = solved.faces[folded].level + 1;
+            continue;
         }
-        least[folded] = solved.faces[folded].level + 1;
+        solved.skins = skins::pairs(faces, &solved);
+        let Some(close) = solved.skins.iter().find(|pair| pair.is_too_close()) else { return Ok(solved) };
+        if parted {
+            let names = close.faces.map(|face| faces[face].name.clone());
+            let (ratio, near) = (close.least_ratio, close.near);
+            return Err(ScaleError::SkinsTooClose { faces: names, ratio, near });
+        }
+        parted = true;
+        for face in close.faces {
+            least[face] = solved.faces[face].level + 1;
+        }
     }
 }
 
@@ -113,10 +126,10 @@ fn solve(
     let mut residual = Residual::new(&motions);
     let mut done = Vec::with_capacity(stages.len());
     for ((stage, face), task) in stages.into_iter().zip(faces).zip(tasks) {
-        let points_before = task.surface.net().len();
+        let image = task.surface.transformed(plain);
         done.push(match stage {
-            Some(stage) => finish(stage, &face.name, points_before, &motions, &mut residual)?,
-            None => ScaledFace::whole(task.surface.transformed(plain)),
+            Some(stage) => finish(stage, &face.name, image, &motions, &mut residual)?,
+            None => ScaledFace::whole(image),
         });
     }
     let residual = residual.greatest(&motions);
@@ -124,6 +137,7 @@ fn solve(
         faces: done,
         sets: grouping.sets(),
         groups: group_list(grouping, motions, &of_loop),
+        skins: Vec::new(),
         residual,
     })
 }
@@ -150,5 +164,5 @@ fn unchanged(
     let Arrangement { motions, of_loop } = rule.arrange(&grouping.sets())?;
     let faces = tasks.iter().map(|task| ScaledFace::whole(task.surface.clone())).collect();
     let groups = group_list(grouping, motions, &of_loop);
-    Ok(Scaled { faces, sets: grouping.sets(), groups, residual: 0.0 })
+    Ok(Scaled { faces, sets: grouping.sets(), groups, skins: Vec::new(), residual: 0.0 })
 }

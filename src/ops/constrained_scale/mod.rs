@@ -27,6 +27,7 @@ mod prepare;
 pub mod refine;
 pub mod rule;
 pub mod scaling;
+pub mod skins;
 pub mod slide;
 pub mod solve;
 mod stage;

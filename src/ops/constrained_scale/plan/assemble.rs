@@ -144,7 +144,7 @@ impl Build<'_> {
             let (Some(curve), Some(edge)) = (&use_of.pcurve, self.edges.get(&use_of.edge)) else { continue };
             let its = self.edge_mover(use_of.edge);
             // An edge that moves against its face: on a plane, or at the far end of a wall that becomes longer.
-            let apart = (its != *mover && !self.held.bases.get(&face).is_some_and(|b| b.net().is_some()))
+            let apart = (its != *mover && self.held.bases.get(&face).is_none_or(|b| b.net().is_none()))
                 .then(|| self.moved_on(face, image, &its))
                 .flatten()
                 .map(SurfaceParameters::Affine);

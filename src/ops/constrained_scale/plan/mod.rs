@@ -29,7 +29,7 @@ mod wall;
 
 use crate::ops::net::layout;
 pub use crate::ops::net::layout::inner_loops;
-pub use report::{FaceMeasures, GroupMeasures, LoopMeasures, Measures};
+pub use report::{FaceMeasures, GroupMeasures, LoopMeasures, Measures, SkinMeasures};
 pub use scope::Scope;
 pub use target::{HoldTarget, LoopFilter};
 

@@ -74,10 +74,8 @@ impl Former<'_> {
             Wall::Rigid => conflict.is_some(),
             Wall::Strict => false,
         };
-        if cuts {
-            if let Some(formed) = self.cut_apart(&whole, &loops, &faces)? {
-                return Ok(formed);
-            }
+        if cuts && let Some(formed) = self.cut_apart(&whole, &loops, &faces)? {
+            return Ok(formed);
         }
         if let Some(apart) = conflict {
             return Err(self.planes_conflict(&loops, apart));

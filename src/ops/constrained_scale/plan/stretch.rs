@@ -15,6 +15,7 @@ use crate::math::Affine;
 use crate::model::Model;
 use crate::ops::OperationError;
 use crate::ops::constrained_scale::faces::scale_faces_by;
+use crate::ops::constrained_scale::skins::SkinPair;
 use crate::ops::constrained_scale::task::{FaceTask, HeldLoop, Scaled, ScaledFace};
 
 /// Stretched faces and the pieces of all features.
@@ -26,6 +27,8 @@ pub(super) struct Stretched {
     pub pieces: Vec<Solved>,
     /// Walls that became longer, each with the pieces that it lies between in the order of its faces.
     pub rings: Vec<Ring>,
+    /// Opposite faces that share a piece.
+    pub skins: Vec<([FaceId; 2], SkinPair)>,
 }
 
 /// A piece as it was solved.
@@ -60,10 +63,11 @@ pub(super) fn stretch(
     let solved: Vec<_> = clusters.par_iter().map(|cluster| run(&former, cluster)).collect();
     let mut out = Stretched::default();
     for found in solved {
-        let Stretched { faces, pieces, rings } = found?;
+        let Stretched { faces, pieces, rings, skins } = found?;
         out.faces.extend(faces);
         out.pieces.extend(pieces);
         out.rings.extend(rings);
+        out.skins.extend(skins);
     }
     Ok(out)
 }
@@ -85,7 +89,7 @@ fn run(former: &Former<'_>, cluster: &Cluster) -> Result<Stretched, OperationErr
     }
     let tasks: Vec<FaceTask<'_>> = faces.iter().map(|&face| task(former, face)).collect();
     let rule = FaceRule { former, faces: &faces };
-    let Scaled { faces: scaled, sets, groups, residual } =
+    let Scaled { faces: scaled, sets, groups, skins, residual } =
         scale_faces_by(&tasks, &former.params.scaling, &rule)?;
     // The rule gives the same pieces again; only the solve knows how far they moved.
     let mut solved = groups.into_iter();
@@ -97,6 +101,7 @@ fn run(former: &Former<'_>, cluster: &Cluster) -> Result<Stretched, OperationErr
             out.pieces.push(Solved { piece, merged: set.len() > 1, residual });
         }
     }
+    out.skins = skins.into_iter().map(|pair| (pair.faces.map(|f| faces[f]), pair)).collect();
     out.faces = faces.into_iter().zip(scaled).collect();
     Ok(out)
 }
