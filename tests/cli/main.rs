@@ -13,6 +13,7 @@ mod paste_corpus;
 mod paste_targets;
 mod patho;
 mod regress;
+mod solids;
 mod stated;
 #[path = "../support/mod.rs"]
 #[allow(dead_code, reason = "shared with other test binaries")]
