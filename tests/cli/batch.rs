@@ -285,3 +285,47 @@ fn a_run_that_is_killed_at_any_moment_leaves_whole_files_only() {
     let left = fixture.left();
     assert!(!left.iter().any(|name| name.contains(".resurf-")), "left behind: {left:?}");
 }
+
+/// The whole corpus as one run, where it is there.
+#[test]
+fn every_part_of_the_corpus_comes_through_or_is_a_named_failure() {
+    let files = super::support::corpus_step_files();
+    if files.is_empty() {
+        return;
+    }
+    let inputs: Vec<String> = files.iter().map(|path| format!("{:?}", path.to_string_lossy())).collect();
+    let job = |output: &str| {
+        format!("version = 1\ninputs = [{}]\noutput = \"{output}/{{stem}}-{{ext}}.stp\"\n", inputs.join(", "))
+    };
+    let fixture = Fixture::new();
+    let run = |jobs: &str, report: &str| {
+        fixture.run(&["run", &format!("job-{jobs}.toml"), "--jobs", jobs, "--report", report])
+    };
+    for jobs in ["1", "2"] {
+        std::fs::write(fixture.path(&format!("job-{jobs}.toml")), job(&format!("out-{jobs}")))
+            .expect("written");
+        let said = run(jobs, "first.json");
+        let report = json(&fixture, "first.json");
+        assert_eq!(outcomes(&report).len(), files.len(), "{said}");
+        for (stem, code, word) in outcomes(&report) {
+            assert!((code == 0) == word.is_empty() && code != 70, "{stem}: {code} {word}");
+        }
+        assert!(said.starts_with("exit code: 1\n"), "some of the odd files are damaged: {said}");
+        let said = run(jobs, "second.json");
+        assert!(said.starts_with("exit code: 1\n") && said.contains("nothing was done"), "{said}");
+        assert_eq!(outcomes(&json(&fixture, "second.json")), outcomes(&report));
+    }
+    let written = |jobs: &str| {
+        let prefix = format!("out-{jobs}/");
+        let names = fixture
+            .left()
+            .into_iter()
+            .filter(|name| name.starts_with(&prefix) && !name.contains("/.resurf/"));
+        names
+            .map(|name| {
+                (name[prefix.len()..].to_owned(), std::fs::read(fixture.path(&name)).expect("an output"))
+            })
+            .collect::<Vec<_>>()
+    };
+    assert!(written("1") == written("2") && written("1").len() > files.len() / 2);
+}
