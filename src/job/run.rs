@@ -1,4 +1,4 @@
-//! Runs a job over its parts: each is read, changed, written beside its place, read again, judged by
+//! Runs a job on one part: it is read, changed, written beside its place, read again, judged by
 //! others, and only then moved into place.
 
 use std::collections::{BTreeMap, BTreeSet};
