@@ -4,7 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, de};
 
 use super::detail_file::CurveSelector;
-use super::file::{Continuity, LengthSetting, positive_length};
+use super::file::{LengthSetting, positive_length};
+use super::scale_file::Continuity;
 use super::selector::Selector;
 
 /// Pull lines on a B-spline face to given curves or points; its border, its loops and its neighbours stay.

@@ -2,8 +2,9 @@
 
 use super::deform_file::{Deform, DeformLine, FormWord, Minimise, NormalSetting};
 use super::detail_file::CurveSelector;
-use super::file::{Continuity, LengthSetting};
+use super::file::LengthSetting;
 use super::operate::{OperateError, other_file};
+use super::scale_file::Continuity;
 use super::select::{self, point_in};
 use super::select_curve;
 use crate::brep::edge_samples::{EdgeRange, EdgeSampling, sample_curve};

@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 
 use globset::{GlobBuilder, GlobMatcher};
+use serde::{Deserialize, Serialize};
 
 use super::Job;
 use super::file::Operation;
 use crate::document::Format;
 
 /// One part of a run.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Part {
     /// The file to read.
     pub input: PathBuf,
@@ -113,6 +114,13 @@ fn files(operation: &mut Operation) -> Vec<&mut String> {
             source.file.as_mut().or(source.feature.as_mut()).into_iter().collect()
         }
     }
+}
+
+/// Files that the operations of a [resolved](resolve) job read beside its parts, in the order of the operations.
+#[must_use]
+pub fn referenced(job: &Job) -> Vec<PathBuf> {
+    let mut operations = job.operation.clone();
+    operations.iter_mut().flat_map(files).map(|file| PathBuf::from(&*file)).collect()
 }
 
 /// The parts of a job, sorted by path; `folder` is the job file's.
