@@ -44,7 +44,8 @@ fn deformed(operation: &str) -> (NurbsSurface, NurbsSurface, Value) {
     let (before, after) = (model(&fixture, "part.stp"), model(&fixture, "out/part.stp"));
     held(&fixture, &before, face_named(&before, "OUTER_SKIN"));
     let report: Value =
-        serde_json::from_str(&std::fs::read_to_string(fixture.path("report.json")).unwrap()).unwrap();
+        serde_json::from_str(&std::fs::read_to_string(fixture.path("report.json")).expect("a report"))
+            .expect("JSON");
     let skin = |model: &Model| spline(model, face_named(model, "OUTER_SKIN")).clone();
     (skin(&before), skin(&after), report["parts"][0]["operations"][0]["measures"].clone())
 }
@@ -55,7 +56,8 @@ fn assert_border(old: &NurbsSurface, new: &NurbsSurface) {
         let t = f64::from(k) / 40.0;
         for (u, v) in [(t, 0.0), (t, 1.0), (0.0, t), (1.0, t)] {
             assert!((old.point(u, v) - new.point(u, v)).norm() < 1e-9);
-            let angle = old.normal(u, v).unwrap().angle(&new.normal(u, v).unwrap());
+            let [was, is] = [old, new].map(|surface| surface.normal(u, v).expect("a regular face"));
+            let angle = was.angle(&is);
             assert!(angle < 1e-7, "the border turns by {angle} at ({u}, {v})");
         }
     }
