@@ -53,8 +53,7 @@ mod tests {
 
     #[test]
     fn a_cylinder_cut_open_elsewhere_and_back_again_is_itself() {
-        let frame =
-            Frame { origin: Point3::origin(), x: Vector3::x(), y: Vector3::y(), z: Vector3::z() };
+        let frame = Frame { origin: Point3::origin(), x: Vector3::x(), y: Vector3::y(), z: Vector3::z() };
         let whole = Surface::Cylinder { frame, radius: 2.0 }.to_nurbs((0.0, TAU), (0.0, 5.0)).unwrap();
         let (turned, seam) = whole.opened_u(1.0, (1.0, 1.0 + TAU)).unwrap();
         for k in 0..=20 {

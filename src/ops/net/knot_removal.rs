@@ -47,7 +47,11 @@ impl KnotRows {
         let columns = self.columns;
         while let Some(r) = self.knots.iter().rposition(|k| *k == knot) {
             let count = self.multiplicity(r);
-            if count < 2 || self.cost(r, &Mask::empty(self.net.len() / columns, columns), (exact, exact), 1.0).is_none() {
+            if count < 2
+                || self
+                    .cost(r, &Mask::empty(self.net.len() / columns, columns), (exact, exact), 1.0)
+                    .is_none()
+            {
                 return count;
             }
             self.remove(r);
@@ -77,7 +81,13 @@ impl KnotRows {
 
     /// Bound of the distance that removing a knot costs; `None` when it cannot go.
     #[must_use]
-    pub fn cost(&self, r: usize, held: &Mask, (exact, tolerance): (f64, f64), per_length: f64) -> Option<f64> {
+    pub fn cost(
+        &self,
+        r: usize,
+        held: &Mask,
+        (exact, tolerance): (f64, f64),
+        per_length: f64,
+    ) -> Option<f64> {
         let (first, last) = self.changing(r);
         if first == 0 || last < first || last - first + 3 > WORK {
             return None;

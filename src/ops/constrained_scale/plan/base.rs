@@ -86,11 +86,7 @@ fn upright(surface: &NurbsSurface, direction: usize) -> NurbsSurface {
 }
 
 /// Lays out all faces with held loops.
-pub(super) fn lay_out(
-    model: &Model,
-    held: &mut Held,
-    layouts: &mut Layouts,
-) -> Result<(), OperationError> {
+pub(super) fn lay_out(model: &Model, held: &mut Held, layouts: &mut Layouts) -> Result<(), OperationError> {
     for k in 0..held.loops.len() {
         let face = held.loops[k].face;
         if held.bases.contains_key(&face) {
@@ -158,12 +154,7 @@ const SMOOTH: f64 = 1e-10;
 
 /// Cuts a closed surface open in the middle of the widest way between loops when its seam is in the way of one. A face
 /// that fills the surface between edges along its seam is left as it is.
-fn cut_open(
-    base: &mut NetBase,
-    direction: usize,
-    inner: &[(Option<usize>, Contour)],
-    rest: &[LoopShape],
-) {
+fn cut_open(base: &mut NetBase, direction: usize, inner: &[(Option<usize>, Contour)], rest: &[LoopShape]) {
     let Some(period) = closed_directions(&base.surface)[direction] else { return };
     let (u, v) = base.surface.domain();
     let domain = [u, v][direction];

@@ -55,7 +55,8 @@ impl Round<'_> {
         };
         let (u, v) = self.surface.domain();
         let (range, across) = ([u, v][along], [u, v][1 - along]);
-        let margin = wound.iter().fold([0.0_f64; 2], |most, l| [0, 1].map(|k| most[k].max(l.contour.margin[k])));
+        let margin =
+            wound.iter().fold([0.0_f64; 2], |most, l| [0, 1].map(|k| most[k].max(l.contour.margin[k])));
         let mut chains: Vec<Vec<[f64; 2]>> = Vec::new();
         for (shape, turn) in wound.iter().zip(&turns) {
             chains.push(chain(&shape.contour.points, turn[along], along, range));
@@ -99,7 +100,8 @@ fn chain(points: &[[f64; 2]], turn: f64, along: usize, range: (f64, f64)) -> Vec
     };
     let long: Vec<[f64; 2]> = [at(-1.0), at(0.0), at(1.0)].concat();
     let value = |x: f64| {
-        let pair = long.windows(2).find(|w| w[0][along] <= x && w[1][along] >= x && w[1][along] > w[0][along]);
+        let pair =
+            long.windows(2).find(|w| w[0][along] <= x && w[1][along] >= x && w[1][along] > w[0][along]);
         let pair = pair.unwrap_or(&long[..2]);
         let part = (x - pair[0][along]) / (pair[1][along] - pair[0][along]);
         let mut q = pair[0];
