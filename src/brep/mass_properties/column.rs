@@ -2,7 +2,7 @@
 
 use super::moments::Sums;
 use crate::brep::inner_breaks;
-use crate::geometry::{Curve, Surface};
+use crate::geometry::{Curve, Repetition, Surface};
 use crate::math::quadrature::gauss_legendre;
 use crate::math::{Point3, Vector3};
 use std::f64::consts::FRAC_PI_2;
@@ -45,7 +45,8 @@ pub(super) struct Column<'a> {
     across: (Rule, Rule),
     pub(super) breaks: Vec<f64>,
     pub(super) period: Option<f64>,
-    wraps: bool,
+    /// Where the surface repeats itself; none for kinds that take any parameter.
+    repetition: Option<Repetition>,
     pieces: usize,
 }
 
@@ -71,7 +72,7 @@ impl<'a> Column<'a> {
         let coarse = if exact { Vec::new() } else { rule(points - 2) };
         let periods = surface.periods();
         let period = if along == Along::U { periods.0 } else { periods.1 };
-        let wraps = !matches!(
+        let endless = matches!(
             surface,
             Surface::Plane(_)
                 | Surface::Cylinder { .. }
@@ -79,11 +80,12 @@ impl<'a> Column<'a> {
                 | Surface::Sphere { .. }
                 | Surface::Torus { .. }
         );
+        let repetition = (!endless).then(|| surface.repetition());
         let breaks = breaks(surface, along);
         let points_across = points_of(surface, along.other());
         let across = (rule(points_across), rule(points_across.saturating_sub(2).max(1)));
         let fine = rule(points);
-        Self { surface, along, reference, fine, coarse, across, breaks, period, wraps, pieces }
+        Self { surface, along, reference, fine, coarse, across, breaks, period, repetition, pieces }
     }
 
     /// The integral over a rectangle between lines, and how far coarser rules are off there.
@@ -119,7 +121,7 @@ impl<'a> Column<'a> {
     /// Point, seen from the reference, and `du × dv`.
     fn element(&self, at: f64, x: f64) -> Sums {
         let (u, v) = if self.along == Along::V { (at, x) } else { (x, at) };
-        let (u, v) = if self.wraps { self.surface.wrapped(u, v) } else { (u, v) };
+        let (u, v) = self.repetition.map_or((u, v), |repetition| repetition.wrapped(u, v));
         let (point, n): (Point3<f64>, Vector3<f64>) = match self.surface {
             Surface::Nurbs(nurbs) => {
                 let (point, du, dv) = nurbs.first_derivatives(u, v);

@@ -6,9 +6,11 @@
 pub mod acting;
 pub mod cells;
 pub mod grams;
+pub mod knot_removal;
 pub mod layout;
 pub mod polygon;
 pub mod sampling;
 
 pub use cells::{CellGrid, Mask};
+pub use knot_removal::KnotRows;
 pub use polygon::{Contour, Domain, Polygon, PolygonFault};
