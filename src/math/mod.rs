@@ -6,6 +6,7 @@ pub mod affine;
 pub mod banded;
 pub mod banded_cholesky;
 pub mod bounds;
+pub mod circle_fit;
 pub mod frame;
 pub mod grid_matrix;
 pub mod quadrature;
@@ -14,8 +15,9 @@ pub mod sparse;
 
 pub use affine::{Affine, cofactor, minimal_rotation};
 pub use bounds::BoundingBox;
+pub use circle_fit::PlaneCircle;
 pub use frame::Frame;
 pub use grid_matrix::{GridFactor, GridMatrix, GridRow};
-pub use nalgebra::{Matrix2, Matrix3, Point2, Point3, Vector2, Vector3, Vector4};
+pub use nalgebra::{Matrix2, Matrix3, Matrix4, Point2, Point3, Vector2, Vector3, Vector4};
 pub use rigid_fit::rigid_fit;
 pub use sprs::{CsMat, TriMat, kronecker_product};
