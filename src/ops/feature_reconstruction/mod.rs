@@ -6,8 +6,17 @@
 
 pub mod ball;
 pub mod blend_surface;
+pub mod error;
+pub mod feet;
+pub mod guide;
+pub mod limiting_line;
+pub mod metric;
+pub mod polynomial_slice;
 pub mod radius_law;
 pub mod smoothing;
+
+pub use error::ReconstructionError;
+pub use feet::{Foot, Projector};
 
 /// Whether a line comes back to its start.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

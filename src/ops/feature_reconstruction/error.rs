@@ -1,0 +1,77 @@
+//! Why a feature cannot be reconstructed. Each variant has a stable code.
+
+use crate::math::sparse::SingularSystem;
+
+/// A feature could not be reconstructed; nothing was changed. Lengths are in file units.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ReconstructionError {
+    /// Too few points.
+    #[error("the {which} cloud has {found} points, at least {least} are needed")]
+    CloudTooSmall {
+        /// `objective`, `blend`.
+        which: &'static str,
+        /// Points found.
+        found: usize,
+        /// Points needed.
+        least: usize,
+    },
+    /// Points in one place or on a line.
+    #[error("the {which} cloud lies in one place or along a line: no surface goes through it")]
+    CloudDegenerate {
+        /// `objective`, `blend`.
+        which: &'static str,
+    },
+    /// The blend's points do not go round the objective's as a band.
+    #[error(
+        "no guide line was found: the blend's points scatter {scatter:.4} about it, a band of their area would be \
+         {width:.4} wide; the feature is not seen from its middle all round, or its points are mixed up: give a guide"
+    )]
+    GuideNotStar {
+        /// Root mean square distance from the line.
+        scatter: f64,
+        /// Width of a band of the same area and length.
+        width: f64,
+    },
+    /// The limiting line is lost over a stretch.
+    #[error(
+        "the limiting line is lost: {failed} of {samples} slices have no crossing with the primary, the longest gap from \
+         ({}, {}, {}) on", near[0], near[1], near[2]
+    )]
+    LimitingLineLost {
+        /// Slices without a crossing.
+        failed: usize,
+        /// All slices.
+        samples: usize,
+        /// Where the longest gap begins.
+        near: [f64; 3],
+    },
+    /// The surface under the objective's points hardly leaves the primary.
+    #[error(
+        "the feature is tangent to the primary: the line where they meet is uncertain by {deviation:.4}, with points \
+         {spacing:.4} apart"
+    )]
+    TangentFeature {
+        /// Median deviation of the line.
+        deviation: f64,
+        /// Distance of neighbouring points.
+        spacing: f64,
+    },
+    /// A system of equations has no solution.
+    #[error(transparent)]
+    Singular(#[from] SingularSystem),
+}
+
+impl ReconstructionError {
+    /// The stable code.
+    #[must_use]
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::CloudTooSmall { .. } => "reconstruct.cloud-too-small",
+            Self::CloudDegenerate { .. } => "reconstruct.cloud-degenerate",
+            Self::GuideNotStar { .. } => "reconstruct.guide-not-star",
+            Self::LimitingLineLost { .. } => "reconstruct.limiting-line-lost",
+            Self::TangentFeature { .. } => "reconstruct.tangent-feature",
+            Self::Singular(_) => "reconstruct.singular",
+        }
+    }
+}
