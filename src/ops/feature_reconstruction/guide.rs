@@ -19,9 +19,11 @@ const GAP: usize = 10;
 /// Functions, or spans, of a line.
 const SPANS: usize = 24;
 /// Weight of second differences, closed and open: without it thin blends give wiggles.
-const STIFF: [f64; 2] = [3e-2, 1e-3];
+const STIFF: [f64; 2] = [3e-2, 3e-3];
 /// Keeps functions without points in place.
 const REGULAR: f64 = 1e-9;
+/// Share of an open line at each end where the data are not taken.
+const CUT: f64 = 0.01;
 /// Points of a line.
 const DENSE: usize = 2000;
 /// Scatter about the line in widths of the band beyond which the feature is no star: an even band has 0.29.
@@ -151,11 +153,9 @@ fn round(axes: &Axes, polar: &[Polar]) -> ParameterLine {
 
 /// The line of a feature that runs out over one border: radius over turn, from the gap's end on.
 fn along(axes: &Axes, polar: &[Polar], gap: (f64, f64)) -> ParameterLine {
-    let (first, last) = (polar[0].0, polar[polar.len() - 1].0);
     let data: Vec<(f64, f64)> = polar.iter().map(|&(turn, r, _)| (turn, r)).collect();
-    let value = open_fitted(&data, (first, last));
-    let turn = |k: usize| first + (last - first) * k as f64 / (DENSE - 1) as f64;
-    let points = (0..DENSE).map(turn).map(|turn| axes.point(turn + gap.1, value(turn))).collect();
+    let (range, value) = open_fitted(&data);
+    let points = even(range).map(|turn| axes.point(turn + gap.1, value(turn))).collect();
     ParameterLine { points, closure: Closure::Open }
 }
 
@@ -170,23 +170,32 @@ fn across(points: &[[f64; 2]]) -> ParameterLine {
     let side = Vector2::new(-long.y, long.x);
     let data: Vec<(f64, f64)> =
         points.iter().map(|p| Point2::from(*p) - centre).map(|d| (d.dot(&long), d.dot(&side))).collect();
-    let range = data.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), (x, _)| (a.min(*x), b.max(*x)));
-    let value = open_fitted(&data, range);
-    let at = |k: usize| range.0 + (range.1 - range.0) * k as f64 / (DENSE - 1) as f64;
-    let points = (0..DENSE).map(at).map(|x| (centre + long * x + side * value(x)).into()).collect();
+    let (range, value) = open_fitted(&data);
+    let points = even(range).map(|x| (centre + long * x + side * value(x)).into()).collect();
     ParameterLine { points, closure: Closure::Open }
 }
 
-fn open_fitted(data: &[(f64, f64)], (first, last): (f64, f64)) -> impl Fn(f64) -> f64 {
+/// Places from one end of a range to the other.
+fn even((first, last): (f64, f64)) -> impl Iterator<Item = f64> {
+    (0..DENSE).map(move |k| first + (last - first) * k as f64 / (DENSE - 1) as f64)
+}
+
+/// The function through data along an open line, and its range. Near the ends, where the border cuts the band aslant, data
+/// are not taken: the function goes on from what is before.
+fn open_fitted(data: &[(f64, f64)]) -> ((f64, f64), impl Fn(f64) -> f64) {
+    let range = data.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), (x, _)| (a.min(*x), b.max(*x)));
+    let cut = CUT * (range.1 - range.0);
+    let taken: Vec<(f64, f64)> =
+        data.iter().filter(|(x, _)| (range.0 + cut..=range.1 - cut).contains(x)).copied().collect();
     // A band in one place has no length; the knots need one.
-    let knots = KnotVector::clamped_uniform(3, SPANS, first, last.max(first + f64::MIN_POSITIVE.sqrt()))
+    let knots = KnotVector::clamped_uniform(3, SPANS, range.0, range.1.max(range.0 + f64::MIN_POSITIVE.sqrt()))
         .expect("a range of positive length");
     let n = knots.n_basis();
     let row = move |x: f64| {
         let basis = knots.basis_derivatives(x, 0);
         std::array::from_fn(|k| (basis.first() + k, basis.values()[k]))
     };
-    fitted(row, data, (n, Closure::Open))
+    (range, fitted(row, &taken, (n, Closure::Open)))
 }
 
 /// The function whose rows give the data best, with small second differences of its coefficients.

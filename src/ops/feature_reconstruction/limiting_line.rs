@@ -8,8 +8,8 @@ use super::Closure;
 use super::error::ReconstructionError;
 use super::feet::Foot;
 use super::metric::{Metric, ParameterLine};
-use super::polynomial_slice::{Crossing, SlabPoint, crossing};
-use super::smoothing::{MEDIAN_TO_DEVIATION, median, smoothed, smoothed_values, stiffness};
+use super::polynomial_slice::{Crossing, HIGHEST, SlabPoint, crossing};
+use super::smoothing::{Order, median, smoothed_against_outliers};
 use crate::cloud::Neighbours;
 use crate::geometry::nurbs::{NurbsCurve2, NurbsSurface, open_cubic, periodic_cubic};
 use crate::math::{Point3, Vector3};
@@ -91,22 +91,31 @@ const BEND: f64 = 0.5;
 /// Windows of the two passes: in bands, and in gaps between line and points (each at least so many spacings).
 const WINDOW: [f64; 2] = [2.0, 3.0];
 const LEAST_GAP: f64 = 2.0;
+/// Deviation in spacings below which no offset counts as an outlier, pass by pass: at first the guide is what is off. Each
+/// pass goes along the line that the one before has found.
+const FLOORS: [f64; 2] = [1.0, 0.3];
+const LAST_FLOOR: f64 = 0.1;
+/// Part of the wavelength for a line that is redrawn.
+const REDRAWN: f64 = 0.7;
 /// Growth of the window while a crossing is uncertain by more than a part of the spacing, and how often it grows.
 const GROWTH: f64 = 1.3;
 const CERTAIN: f64 = 0.1;
 const WINDOWS: usize = 4;
 /// Wavelength of the smoothing in bands, and at least in spacings.
-const WAVELENGTH: [f64; 2] = [4.5, 30.0];
+const WAVELENGTH: [f64; 2] = [6.0, 40.0];
 /// Weights of crossings.
-const WEIGHT: [f64; 2] = [0.25, 100.0];
+const WEIGHT: [f64; 2] = [0.02, 100.0];
 /// Neighbours over which the gap is averaged, to each side.
 const AROUND: usize = 5;
-/// Degrees that compete.
-const DEGREES: std::ops::RangeInclusive<usize> = 3..=5;
+/// Degree of the slices' polynomials; a higher one must leave so much less scatter.
+const DEGREE: usize = 3;
+const LESS_SCATTER: f64 = 0.88;
 /// Shares and runs of slices without a crossing that are too many.
 const LOST: (f64, usize) = (0.3, 10);
 /// Deviation in spacings, and slope, of a feature that does not meet the primary at an angle.
 const TANGENT: [f64; 2] = [1.0, 0.05];
+/// Points of a dense line for each of its own.
+const DENSER: usize = 16;
 /// Places of the final curve: at least, at most, and on a wavelength.
 const PLACES: (usize, usize, f64) = (48, 192, 8.0);
 
@@ -123,15 +132,20 @@ pub fn limiting_line(
 ) -> Result<LimitingLine, ReconstructionError> {
     let spacing = objective.spacing;
     let wavelength = settings.wavelength.unwrap_or((WAVELENGTH[0] * settings.band).max(WAVELENGTH[1] * spacing));
-    let first = Pass::new(primary, objective, guide, &|_| WINDOW[0] * settings.band, 3..=3)?;
-    let guide = first.next_guide(primary, metric, wavelength)?;
-    let gaps = first.gaps();
-    let window = |share: f64| {
-        let at = ((share * gaps.len() as f64) as usize).min(gaps.len() - 1);
-        WINDOW[1] * gaps[at].max(LEAST_GAP * spacing)
-    };
-    let second = Pass::new(primary, objective, &guide, &window, DEGREES)?;
-    second.line(primary, wavelength)
+    let mut pass = Pass::new(primary, objective, guide, &|_| WINDOW[0] * settings.band, DEGREE)?;
+    for (number, floor) in FLOORS.into_iter().enumerate() {
+        let guide = match guide.closure {
+            Closure::Open if number == 0 => pass.redrawn(primary, metric, REDRAWN * wavelength, floor)?,
+            _ => pass.smooth(primary, wavelength, floor)?,
+        };
+        let gaps = pass.gaps();
+        let window = |share: f64| {
+            let at = ((share * gaps.len() as f64) as usize).min(gaps.len() - 1);
+            WINDOW[1] * gaps[at].max(LEAST_GAP * spacing)
+        };
+        pass = Pass::new(primary, objective, &guide, &window, HIGHEST)?;
+    }
+    pass.line(primary, wavelength)
 }
 
 /// Slices along one guide.
@@ -149,7 +163,7 @@ impl Pass {
         objective: &Objective,
         guide: &ParameterLine,
         window: &(dyn Fn(f64) -> f64 + Sync),
-        degrees: std::ops::RangeInclusive<usize>,
+        highest: usize,
     ) -> Result<Self, ReconstructionError> {
         let spacing = objective.spacing;
         let (_, length) = guide.resampled(primary, 2);
@@ -165,7 +179,7 @@ impl Pass {
         let halves = half_widths(&frames, step, spacing, closure);
         let one = |k: usize| {
             let window = window(k as f64 / count as f64);
-            sliced(objective, &frames[k], halves[k], window, degrees.clone())
+            sliced(objective, &frames[k], halves[k], window, highest)
         };
         let crossings: Vec<Option<Crossing>> = (0..count).into_par_iter().map(one).collect();
         let pass = Self { frames, crossings, step, spacing, closure };
@@ -237,43 +251,46 @@ impl Pass {
         (0..n).map(|k| mean(k).max(0.0)).collect()
     }
 
-    /// The crossings as a smooth line, by the forces of a network in the metric plane.
-    fn next_guide(
+    /// The crossings of an open line, smoothed as points of the metric plane: whatever the guide was, near its ends too.
+    fn redrawn(
         &self,
         primary: &NurbsSurface,
         metric: &Metric,
         wavelength: f64,
+        floor: f64,
     ) -> Result<ParameterLine, ReconstructionError> {
         let (values, weights) = self.offsets();
-        let raw: Vec<[f64; 2]> = self
-            .frames
-            .iter()
-            .zip(&values)
-            .map(|(frame, value)| metric.lengths(on_primary(primary, frame, *value)))
-            .collect();
-        let mut now = weights.iter().map(|w| w + 1e-6).collect::<Vec<_>>();
-        let mut points = Vec::new();
-        for _ in 0..4 {
-            points = smoothed(&raw, stiffness(wavelength, self.step), &now, self.closure)?;
-            let off = |(a, b): (&[f64; 2], &[f64; 2])| (a[0] - b[0]).hypot(a[1] - b[1]);
-            let off: Vec<f64> = points.iter().zip(&raw).map(off).collect();
-            let deviation = (MEDIAN_TO_DEVIATION * median(off.clone())).max(0.02 * self.spacing);
-            for (now, (weight, off)) in now.iter_mut().zip(weights.iter().zip(off)) {
-                *now = weight * (2.0 * deviation / off.max(f64::MIN_POSITIVE)).min(1.0).powi(2) + 1e-6;
-            }
-        }
-        let points = points.into_iter().map(|x| metric.parameters(x)).collect();
-        Ok(ParameterLine { points, closure: self.closure })
+        let raw: Vec<[f64; 2]> = self.placed(primary, &values).into_iter().map(|at| metric.lengths(at)).collect();
+        let order = (Order::Third, Order::Third.stiffness(wavelength, self.step));
+        let smooth = smoothed_against_outliers(&raw, order, &weights, floor * self.spacing, self.closure)?;
+        let points = smooth.into_iter().map(|x| metric.parameters(x)).collect();
+        Ok(dense(&ParameterLine { points, closure: self.closure }))
+    }
+
+    /// The crossings as a smooth line: their offsets from the guide are smoothed, which loses none of its bends.
+    fn smooth(
+        &self,
+        primary: &NurbsSurface,
+        wavelength: f64,
+        floor: f64,
+    ) -> Result<ParameterLine, ReconstructionError> {
+        let (values, weights) = self.offsets();
+        let values: Vec<[f64; 1]> = values.into_iter().map(|value| [value]).collect();
+        let order = (Order::Third, Order::Third.stiffness(wavelength, self.step));
+        let floor = floor * self.spacing;
+        let offsets = smoothed_against_outliers(&values, order, &weights, floor, self.closure)?;
+        let points = self.placed(primary, offsets.as_flattened());
+        Ok(dense(&ParameterLine { points, closure: self.closure }))
+    }
+
+    /// Places of the primary at offsets from the guide.
+    fn placed(&self, primary: &NurbsSurface, offsets: &[f64]) -> Vec<[f64; 2]> {
+        self.frames.iter().zip(offsets).map(|(frame, z)| on_primary(primary, frame, *z)).collect()
     }
 
     /// The line by smoothed offsets.
     fn line(&self, primary: &NurbsSurface, wavelength: f64) -> Result<LimitingLine, ReconstructionError> {
-        let (values, weights) = self.offsets();
-        let floor = 0.2 * CERTAIN * self.spacing;
-        let stiff = stiffness(wavelength, self.step);
-        let offsets = smoothed_values(&values, stiff, &weights, floor, self.closure)?;
-        let points = self.frames.iter().zip(&offsets).map(|(frame, z)| on_primary(primary, frame, *z)).collect();
-        let line = ParameterLine { points, closure: self.closure };
+        let line = self.smooth(primary, wavelength, LAST_FLOOR)?;
         let (curve, length) = fitted(primary, &line, wavelength);
         let found = || self.crossings.iter().flatten();
         let n = self.crossings.len();
@@ -288,19 +305,35 @@ impl Pass {
     }
 }
 
-/// The curve through places at even steps of a line, and its length.
-pub fn fitted(primary: &NurbsSurface, line: &ParameterLine, wavelength: f64) -> (NurbsCurve2, f64) {
-    let (_, length) = line.resampled(primary, 2);
-    let count = ((PLACES.2 * length / wavelength) as usize).clamp(PLACES.0, PLACES.1).min(line.points.len());
-    let (even, length) = line.resampled(primary, count);
+/// The cubic through the points of a line.
+fn cubic(line: &ParameterLine) -> NurbsCurve2 {
     let through = match line.closure {
         Closure::Closed => periodic_cubic,
         Closure::Open => open_cubic,
     };
-    let (knots, rows) = through(even.points.as_flattened(), 2);
+    let (knots, rows) = through(line.points.as_flattened(), 2);
     let points = rows.chunks_exact(2).map(|p| [p[0], p[1], 1.0]).collect();
-    let curve = NurbsCurve2::new(knots, points).expect("as many points as the knots ask for");
-    (curve, length)
+    NurbsCurve2::new(knots, points).expect("as many points as the knots ask for")
+}
+
+/// The line with so many times the points, on the cubic through them: between two points straight is not near enough.
+fn dense(line: &ParameterLine) -> ParameterLine {
+    let curve = cubic(line);
+    let steps = match line.closure {
+        Closure::Closed => line.points.len(),
+        Closure::Open => line.points.len() - 1,
+    };
+    let count = DENSER * steps + usize::from(line.closure == Closure::Open);
+    let at = |k: usize| curve.point_at(k as f64 / (DENSER * steps) as f64).into();
+    ParameterLine { points: (0..count).map(at).collect(), closure: line.closure }
+}
+
+/// The curve through places at even steps of a line that is dense, and its length.
+fn fitted(primary: &NurbsSurface, line: &ParameterLine, wavelength: f64) -> (NurbsCurve2, f64) {
+    let (_, length) = line.resampled(primary, 2);
+    let count = ((PLACES.2 * length / wavelength) as usize).clamp(PLACES.0, PLACES.1);
+    let (even, length) = line.resampled(primary, count);
+    (cubic(&even), length)
 }
 
 /// Frames at the points of a line.
@@ -348,18 +381,24 @@ fn sliced(
     frame: &Frame,
     half: f64,
     mut window: f64,
-    degrees: std::ops::RangeInclusive<usize>,
+    highest: usize,
 ) -> Option<Crossing> {
     let mut best: Option<Crossing> = None;
     for _ in 0..WINDOWS {
         let slab = objective.slab(frame, half, 1.6 * window + half);
-        for degree in degrees.clone() {
-            let found = crossing(&slab, half, window, degree);
-            best = match (best, found) {
-                (Some(a), Some(b)) => Some(if b.deviation < a.deviation { b } else { a }),
-                (a, b) => a.or(b),
-            };
+        let mut found = crossing(&slab, half, window, DEGREE);
+        for degree in DEGREE + 1..=highest {
+            let higher = crossing(&slab, half, window, degree);
+            let better = |a: &Crossing, b: &Crossing| b.scatter < LESS_SCATTER * a.scatter;
+            match (found, higher) {
+                (Some(a), Some(b)) if better(&a, &b) => found = Some(b),
+                _ => break,
+            }
         }
+        best = match (best, found) {
+            (Some(a), Some(b)) => Some(if b.deviation < a.deviation { b } else { a }),
+            (a, b) => a.or(b),
+        };
         if best.is_some_and(|best| best.deviation <= CERTAIN * objective.spacing) {
             break;
         }

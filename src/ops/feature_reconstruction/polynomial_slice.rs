@@ -27,6 +27,8 @@ pub struct Crossing {
     pub deviation: f64,
     /// Slope of the height there.
     pub slope: f64,
+    /// Deviation of the points from the polynomial.
+    pub scatter: f64,
     /// Where the cloud begins.
     pub start: f64,
     /// Points that were used.
@@ -37,7 +39,7 @@ pub struct Crossing {
 const ROUNDS: usize = 6;
 const HUBER: f64 = 1.345;
 /// Points at least, for a polynomial at all, of degree 2, of degree 3, and of higher ones.
-const LEAST: [usize; 4] = [8, 14, 30, 60];
+const LEAST: [usize; 4] = [8, 14, 30, 36];
 /// Range in windows in which a zero is looked for; those up to the bound between count first.
 const RANGE: [f64; 3] = [-1.5, 0.1, 0.3];
 /// Steps in which it is looked for.
@@ -67,9 +69,10 @@ pub fn crossing(points: &[SlabPoint], half: f64, window: f64, degree: usize) -> 
         4 => solved::<{ 5 + BESIDE }>(&scaled),
         _ => solved::<{ 6 + BESIDE }>(&scaled),
     }?;
-    let [zero, deviation, slope] = found;
+    let [zero, deviation, slope, scatter] = found;
     let used = scaled.len();
-    Some(Crossing { across: start + zero * window, deviation: deviation * window, slope: slope / window, start, used })
+    let (across, deviation, slope) = (start + zero * window, deviation * window, slope / window);
+    Some(Crossing { across, deviation, slope, scatter, start, used })
 }
 
 /// Where the cloud begins: the mean of a few of the first points.
@@ -112,8 +115,8 @@ fn legendre(x: f64, out: &mut [f64]) {
     }
 }
 
-/// Zero, its deviation and the slope, all in windows.
-fn solved<const N: usize>(points: &[SlabPoint]) -> Option<[f64; 3]> {
+/// Zero, its deviation and the slope, all in windows; and the deviation of the points.
+fn solved<const N: usize>(points: &[SlabPoint]) -> Option<[f64; 4]> {
     let rows: Vec<[f64; N]> = points.iter().map(|p| row(p.across, p.along)).collect();
     let mut weights = vec![1.0; points.len()];
     let mut found = None;
@@ -141,7 +144,7 @@ fn solved<const N: usize>(points: &[SlabPoint]) -> Option<[f64; 3]> {
     let step = 1e-4;
     let slope = (value(zero + step) - value(zero - step)) / (2.0 * step);
     let spread = solution.variance(&row::<N>(zero, 0.0)).sqrt();
-    Some([zero, deviation * spread / slope.abs().max(f64::MIN_POSITIVE), slope])
+    Some([zero, deviation * spread / slope.abs().max(f64::MIN_POSITIVE), slope, deviation])
 }
 
 /// The zero that is met first on the way out of the cloud, or else the first one inside.

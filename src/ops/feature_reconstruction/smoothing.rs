@@ -38,14 +38,6 @@ fn factor(
     SymmetricFactor::new(&matrix.to_csr())
 }
 
-/// The weight of second differences at which a wave of this length is halved where the weight of the points is 1, for
-/// points at even steps.
-#[must_use]
-pub fn stiffness(wavelength: f64, step: f64) -> f64 {
-    let curvature = 2.0 - 2.0 * (std::f64::consts::TAU * step / wavelength).cos();
-    1.0 / (curvature * curvature)
-}
-
 /// Moves points so that the forces of a network of equal bars between neighbours become small against the weights that
 /// hold the points. At the ends of an open line fixed nodes stand where the line would go on straight.
 ///
@@ -87,41 +79,76 @@ const ROUNDS: usize = 8;
 /// Median of absolute values to the deviation of a normal distribution.
 pub(super) const MEDIAN_TO_DEVIATION: f64 = 1.4826;
 
-/// Values along a line of even steps, smoothed: `stiffness |D² z|² + Σ w (z - value)²` is made least, with weights that
-/// fall with the square of the distance for values beyond two deviations. Values of weight 0 may be anything finite.
+/// Differences that are made small.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Order {
+    /// Of second order: straight lines cost nothing.
+    Second,
+    /// Of third order: parabolas cost nothing, and circles hardly anything.
+    Third,
+}
+
+impl Order {
+    /// Differences between the places of a line; those of an open one that reach beyond its ends are left out.
+    fn rows(self, n: usize, closure: Closure) -> Vec<Vec<(usize, f64)>> {
+        let factors: &[f64] = match self {
+            Self::Second => &[-1.0, 2.0, -1.0],
+            Self::Third => &[-1.0, 3.0, -3.0, 1.0],
+        };
+        let count = match closure {
+            Closure::Closed => n,
+            Closure::Open => (n + 1).saturating_sub(factors.len()),
+        };
+        let row = |i: usize| factors.iter().enumerate().map(|(k, a)| ((i + k) % n, *a)).collect();
+        (0..count).map(row).collect()
+    }
+
+    /// The weight of the differences at which a wave of this length is halved where the weight of the points is 1, for
+    /// points at even steps.
+    #[must_use]
+    pub fn stiffness(self, wavelength: f64, step: f64) -> f64 {
+        let twice = 2.0 - 2.0 * (std::f64::consts::TAU * step / wavelength).cos();
+        match self {
+            Self::Second => twice.powi(-2),
+            Self::Third => twice.powi(-3),
+        }
+    }
+}
+
+/// Points along a line of even steps, smoothed: `stiffness |Dᵏ z|² + Σ w |z - point|²` is made least, with weights that
+/// fall with the square of the distance for points beyond two deviations. Points of weight 0 may be anything finite.
 /// `floor` is the least deviation that counts as one.
 ///
 /// # Errors
-/// [`SingularSystem`] for fewer than two positive weights.
+/// [`SingularSystem`] for fewer positive weights than the order of the differences.
 ///
 /// # Panics
-/// When there are not as many weights as values.
-pub fn smoothed_values(
-    values: &[f64],
-    stiffness: f64,
+/// When there are not as many weights as points.
+pub fn smoothed_against_outliers<const K: usize>(
+    points: &[[f64; K]],
+    (order, stiffness): (Order, f64),
     weights: &[f64],
     floor: f64,
     closure: Closure,
-) -> Result<Vec<f64>, SingularSystem> {
-    assert_eq!(values.len(), weights.len(), "a weight for each value");
-    let mut rows = differences(values.len(), closure);
-    if closure == Closure::Open {
-        // Free ends: a straight line costs nothing.
-        rows.retain(|row| row.len() == 3);
-    }
+) -> Result<Vec<[f64; K]>, SingularSystem> {
+    assert_eq!(points.len(), weights.len(), "a weight for each point");
+    let n = points.len();
+    let rows = order.rows(n, closure);
     let mut now = weights.to_vec();
-    let mut z = Vec::new();
+    let mut smooth = points.to_vec();
     for _ in 0..ROUNDS {
-        z = now.iter().zip(values).map(|(w, value)| w * value).collect();
-        factor(&rows, stiffness, &now)?.solve(&mut z);
-        let off: Vec<f64> = z.iter().zip(values).map(|(z, value)| (z - value).abs()).collect();
-        let counted = off.iter().zip(weights).filter(|(_, w)| **w > 0.0).map(|(off, _)| *off);
-        let deviation = (MEDIAN_TO_DEVIATION * median(counted.collect())).max(floor);
-        for (now, (weight, off)) in now.iter_mut().zip(weights.iter().zip(&off)) {
-            *now = weight * (2.0 * deviation / off.max(f64::MIN_POSITIVE)).min(1.0).powi(2);
+        let mut right: Vec<f64> = (0..K * n).map(|at| now[at % n] * points[at % n][at / n]).collect();
+        factor(&rows, stiffness, &now)?.solve(&mut right);
+        smooth = (0..n).map(|i| std::array::from_fn(|k| right[k * n + i])).collect();
+        let off = |i: usize| (0..K).map(|k| (smooth[i][k] - points[i][k]).powi(2)).sum::<f64>().sqrt();
+        let off: Vec<f64> = (0..n).map(off).collect();
+        let counted = (0..n).filter(|&i| weights[i] > 0.0).map(|i| off[i]).collect();
+        let deviation = (MEDIAN_TO_DEVIATION * median(counted)).max(floor);
+        for i in 0..n {
+            now[i] = weights[i] * (2.0 * deviation / off[i].max(f64::MIN_POSITIVE)).min(1.0).powi(2);
         }
     }
-    Ok(z)
+    Ok(smooth)
 }
 
 /// The middle value, or the mean of the two middle ones; 0 without values.

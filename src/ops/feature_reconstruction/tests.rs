@@ -4,7 +4,7 @@ use super::Closure::{Closed, Open};
 use super::ball::{Station, Unrest, rest};
 use super::blend_surface::{lofted, middle};
 use super::radius_law::{LinearLaw, SliceRadius};
-use super::smoothing::{smoothed, smoothed_values, stiffness};
+use super::smoothing::{Order, smoothed, smoothed_against_outliers};
 use crate::geometry::nurbs::{KnotVector, NurbsSurface};
 use crate::math::{PlaneCircle, Point2, Point3, Vector3};
 use serde_json::Value;
@@ -71,7 +71,7 @@ fn a_wave_is_kept_by_the_part_that_the_formula_says() {
     let step = 0.7;
     let wave: Vec<f64> = (0..n).map(|i| (TAU * waves as f64 * f64::from(i) / f64::from(n)).sin()).collect();
     for wavelength in [4.0, 8.4, 30.0] {
-        let alpha = stiffness(wavelength, step);
+        let alpha = Order::Second.stiffness(wavelength, step);
         let gain = |l: f64| 1.0 / (1.0 + alpha * (2.0 - 2.0 * (TAU * step / l).cos()).powi(2));
         assert!((gain(wavelength) - 0.5).abs() < 1e-12);
         let kept = gain(f64::from(n) * step / waves as f64);
@@ -80,25 +80,36 @@ fn a_wave_is_kept_by_the_part_that_the_formula_says() {
         let weights = vec![1.0; wave.len()];
         assert_near(smoothed(&points, alpha, &weights, Closed).unwrap().as_flattened(), &expected, 1e-10);
         // A floor above all residuals: nothing counts as an outlier.
-        assert_near(&smoothed_values(&wave, alpha, &weights, 1e3, Closed).unwrap(), &expected, 1e-10);
+        let floor = 1e3;
+        let found = smoothed_against_outliers(&points, (Order::Second, alpha), &weights, floor, Closed).unwrap();
+        assert_near(found.as_flattened(), &expected, 1e-10);
+        let alpha = Order::Third.stiffness(wavelength, step);
+        let twice = 2.0 - 2.0 * (TAU * waves as f64 / f64::from(n)).cos();
+        let expected: Vec<f64> = wave.iter().map(|w| w / (1.0 + alpha * twice.powi(3))).collect();
+        let found = smoothed_against_outliers(&points, (Order::Third, alpha), &weights, floor, Closed).unwrap();
+        assert_near(found.as_flattened(), &expected, 1e-10);
     }
     let none = smoothed(&[[1.0], [5.0], [2.0]], 0.0, &[1.0; 3], Open).unwrap();
     assert_near(none.as_flattened(), &[1.0, 5.0, 2.0], 1e-15);
 }
 
 #[test]
-fn a_straight_line_stays_and_a_value_far_off_it_does_not_count() {
-    let mut values: Vec<f64> = (0..40).map(|i| 2.0 - 0.1 * f64::from(i)).collect();
-    let straight = values.clone();
-    values[17] += 5.0;
-    let found = smoothed_values(&values, 100.0, &[1.0; 40], 1e-6, Open).unwrap();
-    assert_near(&found, &straight, 1e-6);
-    // Where nothing is known the line goes on.
-    let mut weights = vec![1.0; 40];
-    weights[30..].fill(0.0);
-    values[17] -= 5.0;
-    values[30..].fill(99.0);
-    assert_near(&smoothed_values(&values, 1.0, &weights, 1e-9, Open).unwrap(), &straight, 1e-8);
+fn what_costs_nothing_stays_and_a_point_far_off_it_does_not_count() {
+    for (order, bend) in [(Order::Second, 0.0), (Order::Third, 0.02)] {
+        let at = |i: usize| [2.0 - 0.1 * i as f64 + bend * (i * i) as f64];
+        let smooth: Vec<[f64; 1]> = (0..40).map(at).collect();
+        let mut points = smooth.clone();
+        points[17][0] += 5.0;
+        let found = smoothed_against_outliers(&points, (order, 100.0), &[1.0; 40], 1e-6, Open).unwrap();
+        assert_near(found.as_flattened(), smooth.as_flattened(), 1e-6);
+        // Where nothing is known the line goes on.
+        let mut weights = vec![1.0; 40];
+        weights[30..].fill(0.0);
+        points[17][0] -= 5.0;
+        points[30..].fill([99.0]);
+        let found = smoothed_against_outliers(&points, (order, 1.0), &weights, 1e-9, Open).unwrap();
+        assert_near(found.as_flattened(), smooth.as_flattened(), 1e-7);
+    }
 }
 
 #[test]
