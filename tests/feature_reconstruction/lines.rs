@@ -1,6 +1,6 @@
 //! The limiting line against the lines that the parts' formulas have.
 
-use crate::parts::{labelled, primary};
+use crate::parts::{points, primary};
 use crate::scan::{Contacts, Kind, Part, cloud};
 use resurf::geometry::nurbs::{NurbsSurface, Wrap};
 use resurf::math::Point3;
@@ -35,7 +35,7 @@ pub fn sampled(line: &LimitingLine, surface: &NurbsSurface, count: usize) -> Vec
 }
 
 pub fn reconstructed(part: &Part, cloud: &cloud::Cloud) -> (NurbsSurface, Vec<LimitingLine>) {
-    let [objective, blend] = [cloud::OBJECTIVE, cloud::BLEND].map(|label| labelled(cloud, label));
+    let [objective, blend] = [cloud::OBJECTIVE, cloud::BLEND].map(|label| points(&cloud.labelled(label)));
     let surface = primary(part);
     let surface = if part.closed { surface } else { surface.extended((13.0, 13.0), (30.0, 30.0)).unwrap() };
     let projector = Projector::new(&surface, Wrap::default());

@@ -56,6 +56,50 @@ pub enum ReconstructionError {
         /// Distance of neighbouring points.
         spacing: f64,
     },
+    /// A line has no direction somewhere.
+    #[error("a line stands still near ({}, {}, {})", near[0], near[1], near[2])]
+    LineSingular {
+        /// Where.
+        near: [f64; 3],
+    },
+    /// Too few slices of the blend have a circle.
+    #[error("no radius was found: {found} slices of the blend have a circle, at least {least} are needed")]
+    RadiusFailed {
+        /// Slices with a circle.
+        found: usize,
+        /// Slices needed.
+        least: usize,
+    },
+    /// The ball does not rest between the surfaces.
+    #[error("a ball of radius {radius:.4} does not fit near ({}, {}, {}): {reason}", near[0], near[1], near[2])]
+    BallDoesNotFit {
+        /// Its radius.
+        radius: f64,
+        /// The station of the limiting line.
+        near: [f64; 3],
+        /// Lower-case fragment.
+        reason: &'static str,
+    },
+    /// The blend turns by half a turn or nearly.
+    #[error("the blend's arc near ({}, {}, {}) is half a turn or nearly: the surfaces lie back to back", near[0], near[1], near[2])]
+    ArcTooWide {
+        /// Centre of the ball.
+        near: [f64; 3],
+    },
+    /// The blend does not come near enough to the surfaces.
+    #[error(
+        "a blend of {sections} sections misses the surfaces by {deviation:.3e} where {tolerance:.3e} is allowed, and          {angle:.3} degrees; the secondary is not smooth"
+    )]
+    BlendNotFair {
+        /// Sections.
+        sections: usize,
+        /// Greatest distance.
+        deviation: f64,
+        /// Greatest distance allowed.
+        tolerance: f64,
+        /// Greatest angle in degrees.
+        angle: f64,
+    },
     /// A system of equations has no solution.
     #[error(transparent)]
     Singular(#[from] SingularSystem),
@@ -71,6 +115,11 @@ impl ReconstructionError {
             Self::GuideNotStar { .. } => "reconstruct.guide-not-star",
             Self::LimitingLineLost { .. } => "reconstruct.limiting-line-lost",
             Self::TangentFeature { .. } => "reconstruct.tangent-feature",
+            Self::LineSingular { .. } => "reconstruct.line-singular",
+            Self::RadiusFailed { .. } => "reconstruct.radius-failed",
+            Self::BallDoesNotFit { .. } => "reconstruct.ball-does-not-fit",
+            Self::ArcTooWide { .. } => "reconstruct.arc-too-wide",
+            Self::BlendNotFair { .. } => "reconstruct.blend-not-fair",
             Self::Singular(_) => "reconstruct.singular",
         }
     }

@@ -12,7 +12,10 @@ pub mod guide;
 pub mod limiting_line;
 pub mod metric;
 pub mod polynomial_slice;
+pub mod radius;
 pub mod radius_law;
+pub mod radius_on_primary;
+pub mod rolling;
 pub mod smoothing;
 
 pub use error::ReconstructionError;
