@@ -100,6 +100,30 @@ pub enum ReconstructionError {
         /// Greatest angle in degrees.
         angle: f64,
     },
+    /// The primary cannot be trimmed.
+    #[error("the primary cannot be trimmed near ({}, {}, {}): {reason}", near[0], near[1], near[2])]
+    Trim {
+        /// Where.
+        near: [f64; 3],
+        /// Lower-case fragment.
+        reason: String,
+    },
+    /// What stands inside the feature's lines is not an old feature.
+    #[error(
+        "face {face} hangs on a bound of the primary inside the feature's lines and touches the primary outside of them, too:          it is no feature that could be replaced"
+    )]
+    RegionGoesOn {
+        /// The face.
+        face: String,
+    },
+    /// Two features of a repetition share a point of the primary.
+    #[error("features {first} and {second} of the repetition overlap")]
+    FeaturesOverlap {
+        /// Number of one, from 1.
+        first: usize,
+        /// Number of the other.
+        second: usize,
+    },
     /// A system of equations has no solution.
     #[error(transparent)]
     Singular(#[from] SingularSystem),
@@ -120,6 +144,9 @@ impl ReconstructionError {
             Self::BallDoesNotFit { .. } => "reconstruct.ball-does-not-fit",
             Self::ArcTooWide { .. } => "reconstruct.arc-too-wide",
             Self::BlendNotFair { .. } => "reconstruct.blend-not-fair",
+            Self::Trim { .. } => "reconstruct.trim",
+            Self::RegionGoesOn { .. } => "reconstruct.region-goes-on",
+            Self::FeaturesOverlap { .. } => "reconstruct.features-overlap",
             Self::Singular(_) => "reconstruct.singular",
         }
     }

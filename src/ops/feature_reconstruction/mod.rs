@@ -16,6 +16,7 @@ pub mod radius;
 pub mod radius_law;
 pub mod radius_on_primary;
 pub mod rolling;
+pub mod sewing;
 pub mod smoothing;
 
 pub use error::ReconstructionError;
