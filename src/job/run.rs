@@ -20,7 +20,9 @@ use super::part::Read;
 use super::plan::Part;
 use super::report::{DiagnosticReport, Edits, PartReport, Status, WritePath};
 use super::restate::{self, Outcome, restated};
+use crate::brep::FaceId;
 use crate::document::{Document, Stamp};
+use crate::model::change_set::{NewFace, NewSurface};
 use crate::model::{AnnotationKind, Balance, ChangeSet, Model, Origin};
 
 /// Whether a run writes.
@@ -264,11 +266,17 @@ fn tell_restated(document: &Document, report: &mut PartReport) {
 
 /// Counts of surfaces by kind, as a change set will leave them.
 fn count_kinds(surfaces: &mut BTreeMap<String, usize>, model: &Model, changes: &ChangeSet) {
-    let new = changes.surfaces.values().chain(changes.new_faces.iter().map(|face| &face.surface));
-    new.for_each(|new| *surfaces.entry(new.kind().to_owned()).or_insert(0) += 1);
-    for &face in changes.surfaces.keys().chain(&changes.removed_faces) {
-        let old = super::measure::kind(model.brep.surface_of(face));
-        surfaces.entry(old).and_modify(|count| *count = count.saturating_sub(1));
+    let own = |face: &FaceId| super::measure::kind(model.brep.surface_of(*face));
+    let kind = |face: &NewFace| match &face.surface {
+        NewSurface::Own(surface) => surface.kind().to_owned(),
+        NewSurface::Of(old) => changes.surfaces.get(old).map_or_else(|| own(old), |new| new.kind().to_owned()),
+    };
+    let changed = changes.surfaces.values().map(|new| new.kind().to_owned());
+    for new in changed.chain(changes.new_faces.iter().map(kind)) {
+        *surfaces.entry(new).or_insert(0) += 1;
+    }
+    for face in changes.surfaces.keys().chain(&changes.removed_faces) {
+        surfaces.entry(own(face)).and_modify(|count| *count = count.saturating_sub(1));
     }
     surfaces.retain(|_, count| *count > 0);
 }

@@ -78,13 +78,22 @@ pub struct NewBound {
     pub coedges: Vec<NewCoedge>,
 }
 
+/// Where a new face has its surface from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NewSurface {
+    /// A surface of its own.
+    Own(Surface),
+    /// The (new) surface of a face of the model, which both share: the new face is a piece of that one.
+    Of(FaceId),
+}
+
 /// A new face.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewFace {
     /// Face whose shell, name, look and layers it gets.
     pub beside: FaceId,
     /// Its surface.
-    pub surface: Surface,
+    pub surface: NewSurface,
     /// Whether its normal is the surface's.
     pub same_sense: bool,
     /// Its bounds, at least one.

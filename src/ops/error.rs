@@ -4,6 +4,7 @@ use super::constrained_scale::ScaleError;
 use super::deform::DeformError;
 use super::detail_transfer::TransferError;
 use super::feature_paste::PasteError;
+use super::feature_reconstruction::ReconstructionError;
 use super::simplify::SimplifyError;
 
 /// An element that cannot take part, and why.
@@ -32,6 +33,9 @@ pub enum OperationError {
     /// A feature could not be pasted.
     #[error(transparent)]
     Paste(#[from] PasteError),
+    /// A feature could not be reconstructed.
+    #[error(transparent)]
+    Reconstruct(#[from] ReconstructionError),
     /// A face could not be simplified.
     #[error(transparent)]
     Simplify(#[from] SimplifyError),
@@ -115,6 +119,7 @@ impl OperationError {
             Self::Deform(error) => error.code(),
             Self::Transfer(error) => error.code(),
             Self::Paste(error) => error.code(),
+            Self::Reconstruct(error) => error.code(),
             Self::Simplify(error) => error.code(),
             Self::CannotFollow { .. } => "scale.cannot-follow",
             Self::NeighboursOutside { .. } => "scale.neighbours-outside",

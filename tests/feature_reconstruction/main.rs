@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "builders of fixtures stop at what cannot be built")]
 
 mod cloud_files;
+mod lines;
 mod parts;
 #[path = "../../samples/generate/scan/mod.rs"]
 mod scan;

@@ -9,7 +9,7 @@ use resurf::brep::{BodyId, Brep, EdgeId, FaceId, LoopId};
 use resurf::geometry::{Curve, Curve2d, Surface};
 use resurf::math::{Frame, Point2, Point3, Vector2, Vector3};
 use resurf::model::change_set::{
-    EdgeCurve, EdgeRef, NewBound, NewCoedge, NewEdge, NewEdgeId, NewFace, NewVertexId, VertexRef,
+    EdgeCurve, EdgeRef, NewSurface, NewBound, NewCoedge, NewEdge, NewEdgeId, NewFace, NewVertexId, VertexRef,
 };
 use resurf::model::{Balance, ChangeSet, Model};
 use resurf::step::lower::{LowerError, lower};
@@ -79,12 +79,13 @@ fn pocket(model: &Model) -> ChangeSet {
         coedge(foot, false, level(0.0)),
         coedge(seam, true, side(0.0)),
     ];
-    let surface = Surface::Cylinder { frame: frame(floor, Vector3::x(), up), radius: RADIUS };
+    let surface =
+        NewSurface::Own(Surface::Cylinder { frame: frame(floor, Vector3::x(), up), radius: RADIUS });
     let bounds = vec![NewBound { outer: true, coedges: around }];
     changes.new_faces.push(NewFace { beside: face, surface, same_sense: false, bounds });
     let on_floor = coedge(foot, true, circle2(Point2::origin(), RADIUS, false));
     let bounds = vec![NewBound { outer: true, coedges: vec![on_floor] }];
-    let surface = Surface::Plane(frame(floor, Vector3::x(), up));
+    let surface = NewSurface::Own(Surface::Plane(frame(floor, Vector3::x(), up)));
     changes.new_faces.push(NewFace { beside: face, surface, same_sense: true, bounds });
     changes
 }
@@ -202,7 +203,7 @@ impl<'m> Slot<'m> {
     fn add_face(&mut self, ground: Frame, ring: [(NewEdgeId, bool); 4]) {
         let coedges = ring.map(|(edge, forward)| self.on(&ground, edge, forward)).to_vec();
         let bounds = vec![NewBound { outer: true, coedges }];
-        let surface = Surface::Plane(ground);
+        let surface = NewSurface::Own(Surface::Plane(ground));
         self.changes.new_faces.push(NewFace { beside: top(self.model), surface, same_sense: true, bounds });
     }
 

@@ -19,6 +19,7 @@ pub mod project;
 mod refine;
 mod reshape;
 pub mod surface;
+mod through;
 
 pub use basis::LocalBasis;
 pub use curve::{NurbsCurve, NurbsCurve2, NurbsCurve3};
@@ -30,6 +31,7 @@ pub use interpolate::{GrevilleCollocation, interpolate_grid};
 pub use knot_vector::{KnotVector, KnotVectorError};
 pub use project::{CurveProjection, SearchRange, SurfaceLocator, SurfaceProjection, Wrap, foot_point};
 pub use surface::NurbsSurface;
+pub use through::{open_cubic, periodic_cubic};
 
 /// The net does not fit the knots, or a weight is not a positive number.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

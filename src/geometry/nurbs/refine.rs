@@ -49,7 +49,7 @@ fn clamping_knots(knots: &KnotVector) -> Vec<f64> {
 }
 
 /// Clamped knots and rows of the same geometry over the same domain.
-fn clamp_rows(knots: &KnotVector, rows: &[f64], width: usize) -> (KnotVector, Vec<f64>) {
+pub(super) fn clamp_rows(knots: &KnotVector, rows: &[f64], width: usize) -> (KnotVector, Vec<f64>) {
     let p = knots.degree();
     let (start, end) = knots.domain();
     let more = clamping_knots(knots);

@@ -1,7 +1,35 @@
-//! Feature reconstruction: a region of a part that was replaced by another surface, rebuilt from a cloud of points.
+//! Feature reconstruction: from a cloud of points to a blended feature on the part.
 //!
-//! Pure: clouds come as points, results go as geometry.
+//! A region of a primary surface was replaced by a secondary one, and the edge between them rounded by a rolling ball.
+//! From points of the secondary and of the blend follow the limiting line (the sharp edge that is no more), the secondary
+//! surface, the radius and the blend; they take the region's place in the body.
 
+pub mod ball;
+pub mod blend_surface;
+pub mod error;
 pub mod feet;
+pub mod guide;
+pub mod limiting_line;
+pub mod metric;
+pub mod polynomial_slice;
+pub mod radius;
+pub mod radius_law;
+pub mod radius_on_primary;
+pub mod rolling;
+pub mod sewing;
+pub mod smoothing;
 
+pub use error::ReconstructionError;
 pub use feet::{Foot, Projector};
+
+/// Whether a line comes back to its start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Closure {
+    /// Its last point is followed by its first.
+    Closed,
+    /// It has two ends.
+    Open,
+}
+
+#[cfg(test)]
+mod tests;

@@ -9,7 +9,7 @@ use super::edge::{Ground, Owner, PcurveUses, gather};
 use super::list::places;
 use super::{LowerError, Lowering};
 use crate::brep::{Arena, FaceId};
-use crate::model::change_set::{NewEdgeId, NewFace};
+use crate::model::change_set::{NewSurface, NewEdgeId, NewFace};
 use crate::model::{ChangeSet, Model};
 
 /// Keyword of the list of everything styled; not in the tables, because nothing of it is read.
@@ -21,23 +21,21 @@ const STYLED_LIST: [&[u8]; 2] = [
 impl<'a> Lowering<'a> {
     /// Writes everything that comes and goes. The surfaces of old faces must be decided already.
     pub(super) fn topology(&mut self, changes: &ChangeSet) -> Result<(), LowerError> {
-        let mut surfaces = Vec::new();
-        for face in &changes.new_faces {
-            surfaces.push(self.new_surface(face)?);
+        let mut grounds = Vec::new();
+        for (k, face) in changes.new_faces.iter().enumerate() {
+            grounds.push(self.new_ground(k, face, changes)?);
         }
         let mut uses: PcurveUses<'_> = changes.new_edges.iter().map(|_| Vec::new()).collect();
         for (&face, bounds) in &changes.new_bounds {
             gather(&mut uses, self.ground(face, changes)?, bounds);
         }
-        for (k, (face, &surface)) in changes.new_faces.iter().zip(&surfaces).enumerate() {
-            let owner = Owner::New(k);
-            let ground = Ground { owner, surface, face: face.beside, geometry: Some(&face.surface) };
+        for (face, &ground) in changes.new_faces.iter().zip(&grounds) {
             gather(&mut uses, ground, &face.bounds);
         }
         let edges = self.new_edges(changes, &uses)?;
         self.bounds_of_old_faces(changes, &edges)?;
-        for (face, &surface) in changes.new_faces.iter().zip(&surfaces) {
-            self.new_face(face, surface, &edges)?;
+        for (face, ground) in changes.new_faces.iter().zip(&grounds) {
+            self.new_face(face, ground.surface, &edges)?;
         }
         for &face in &changes.removed_faces {
             let name = super::instance_name(self.model.origins.faces[face])?;
@@ -60,11 +58,31 @@ impl<'a> Lowering<'a> {
         Ok(Ground { owner: Owner::Old(face), surface, face, geometry })
     }
 
-    fn new_surface(&mut self, face: &NewFace) -> Result<InstanceName, LowerError> {
-        let beside = super::instance_name(self.model.origins.faces[face.beside])?;
-        let radians = self.radians_of(face.beside);
-        let body = self.surface_body(beside, &face.surface, radians, &Inherited::nothing())?;
-        self.append(&body)
+    /// The surface of a new face, appended where it is its own.
+    fn new_ground<'c>(
+        &mut self,
+        number: usize,
+        face: &'c NewFace,
+        changes: &'c ChangeSet,
+    ) -> Result<Ground<'c>, LowerError>
+    where
+        'a: 'c,
+    {
+        let owner = Owner::New(number);
+        match &face.surface {
+            NewSurface::Own(surface) => {
+                let beside = super::instance_name(self.model.origins.faces[face.beside])?;
+                let radians = self.radians_of(face.beside);
+                let body = self.surface_body(beside, surface, radians, &Inherited::nothing())?;
+                let name = self.append(&body)?;
+                Ok(Ground { owner, surface: name, face: face.beside, geometry: Some(surface) })
+            }
+            NewSurface::Of(old) => {
+                let ground = self.ground(*old, changes)?;
+                self.gain(ground.surface);
+                Ok(Ground { owner, ..ground })
+            }
+        }
     }
 
     fn new_face(
