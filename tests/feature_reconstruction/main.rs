@@ -5,6 +5,7 @@
 mod cloud_files;
 mod lines;
 mod parts;
+mod secondaries;
 #[path = "../../samples/generate/scan/mod.rs"]
 mod scan;
 mod segmentation;
