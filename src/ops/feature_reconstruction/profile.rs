@@ -1,7 +1,7 @@
 //! The height of a cloud along a path: a smooth function through the points of a slab.
 //!
-//! A cubic spline of the place along, and, so that a slab of some width may be used where the surface leans across it, the
-//! place across times a second, coarser one.
+//! A cubic spline of the place along, and, so that a slab of some width may be used where the surface leans and bends across
+//! it, the place across and its square times coarser ones.
 
 use super::smoothing::{MEDIAN_TO_DEVIATION, median};
 use crate::geometry::nurbs::KnotVector;
@@ -46,7 +46,7 @@ pub const LEAST: usize = 20;
 /// Length of a span in spacings.
 const SPAN: f64 = 8.0;
 /// Weight of third differences as a part of the mean diagonal, and a small part of that for every unknown.
-const STIFF: [f64; 2] = [1e-6, 1e-9];
+const STIFF: [f64; 2] = [1e-4, 1e-7];
 
 impl Profile {
     /// The height over `range` from points within it; `None` with fewer than [`LEAST`], or for an empty range.
@@ -61,21 +61,21 @@ impl Profile {
         let knots = KnotVector::clamped_uniform(3, spans, low, high).ok()?;
         let beside = KnotVector::clamped_uniform(3, (spans / 2).max(1), low, high).ok()?;
         let (n, m) = (knots.n_basis(), beside.n_basis());
-        let mut equations = Equations::new(n + m);
-        for point in &used {
+        let row = |point: &SlabPlace| {
             let mut row = entries(&knots, point.along, 0, 1.0);
             row.extend(entries(&beside, point.along, n, point.across));
-            equations.add(&row, point.height, 1.0);
-        }
+            row.extend(entries(&beside, point.along, n + m, point.across.powi(2)));
+            row
+        };
+        let mut equations = Equations::new(n + 2 * m);
+        used.iter().for_each(|point| equations.add(&row(point), point.height, 1.0));
         for pin in pins {
             equations.add(&entries(&knots, pin.along.clamp(low, high), 0, 1.0), pin.height, pin.weight);
         }
         equations.stiffen(n);
         let solved = equations.solved()?;
         let off = |point: &&SlabPlace| {
-            let row = entries(&knots, point.along, 0, 1.0);
-            let lean = entries(&beside, point.along, n, point.across);
-            let height: f64 = row.iter().chain(&lean).map(|&(k, x)| x * solved[k]).sum();
+            let height: f64 = row(point).iter().map(|&(k, x)| x * solved[k]).sum();
             (height - point.height).abs()
         };
         let scatter = MEDIAN_TO_DEVIATION * median(used.iter().map(off).collect());
@@ -158,7 +158,7 @@ mod tests {
             .map(|(along, across)| SlabPlace {
                 along,
                 across,
-                height: height(along) + across * (0.3 - 0.01 * along),
+                height: height(along) + across * (0.3 - 0.01 * along) - 0.02 * across * across,
             })
             .collect();
         let found = Profile::fitted(&slab, [0.0, 29.9], 0.2, &[]).unwrap();

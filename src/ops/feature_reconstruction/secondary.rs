@@ -105,8 +105,13 @@ const MARGIN: f64 = 0.15;
 /// Length of a span as a part of the extent, and least length in spacings, at first and at last.
 const SPAN: f64 = 1.0 / 20.0;
 const SPAN_SPACINGS: [f64; 2] = [3.0, 1.5];
-/// Strength of the constraints with lines alone, and with the cloud.
-const STRENGTH: [f64; 2] = [10.0, 1e3];
+/// Strength of the constraints with lines alone.
+const STRENGTH: f64 = 10.0;
+/// Strengths with the cloud. The weakest one is taken that leaves the points no farther away than the last does, but for
+/// what a net of so many control points wins by following their noise.
+const STRENGTHS: [f64; 4] = [1.0, 10.0, 1e2, 1e3];
+/// Points by which strengths are compared.
+const COMPARED: usize = 20_000;
 /// Weight of the lines beside the cloud.
 const BESIDE_CLOUD: f64 = 0.2;
 /// Part of the domain that constraints must fill, and their least count, before the border is let free.
@@ -267,11 +272,11 @@ impl Work<'_> {
         let mut system = System::new(net, &network, &self.settings.criteria.refined(share))?;
         system.add(drawn.iter().copied())?;
         if !fitted {
-            return Ok(system.balanced(STRENGTH[0])?.surface);
+            return Ok(system.balanced(STRENGTH)?.surface);
         }
         let mut all = system.clone();
         all.add(self.through_points(net, |_| 1.0))?;
-        let surface = all.balanced(STRENGTH[1])?.surface;
+        let surface = self.balanced(&all)?;
         let signed = self.heights_above(&surface);
         let noise = noise.unwrap_or_else(|| MEDIAN_TO_DEVIATION * median(absolute(&signed)));
         let bound = OUTLYING * noise.max(CHORD[0] * height);
@@ -279,7 +284,34 @@ impl Work<'_> {
             return Ok(surface);
         }
         system.add(self.through_points(net, |k| (bound / signed[k].abs()).powi(2).min(1.0)))?;
-        Ok(system.balanced(STRENGTH[1])?.surface)
+        self.balanced(&system)
+    }
+
+    /// The surface that follows the points, and their noise as little as it can.
+    fn balanced(&self, system: &System<'_>) -> Result<NurbsSurface, ReconstructionError> {
+        let [weaker @ .., last] = STRENGTHS;
+        let closest = system.balanced(last)?.surface;
+        let count = self.sources.points.len().max(1) as f64;
+        let most = self.missed_at_feet(&closest) * (1.0 + closest.net().len() as f64 / count);
+        for strength in weaker {
+            let surface = system.balanced(strength)?.surface;
+            if self.missed_at_feet(&surface) <= most {
+                return Ok(surface);
+            }
+        }
+        Ok(closest)
+    }
+
+    /// Mean square of the distances of some points from the places of their feet.
+    fn missed_at_feet(&self, surface: &NurbsSurface) -> f64 {
+        let step = (self.sources.points.len() / COMPARED).max(1);
+        let places = self.sources.feet.iter().zip(self.sources.points).step_by(step);
+        let within = places.filter(|(foot, _)| is_within(surface, foot.at));
+        let square = |(foot, point): (&Foot, &Point3<f64>)| {
+            (surface.point(foot.at[0], foot.at[1]) - point).norm_squared()
+        };
+        let (sum, count) = within.map(square).fold((0.0, 0.0), |(sum, n), x| (sum + x, n + 1.0));
+        if count > 0.0 { sum / count } else { 0.0 }
     }
 
     /// What lines and limiting lines ask for.
