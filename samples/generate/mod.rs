@@ -35,6 +35,11 @@ pub struct Sample {
     pub bytes: Vec<u8>,
 }
 
+/// A cloud of points on a part, with noise.
+fn scan(path: &'static str, kind: Kind, count: usize, noise: f64) -> Sample {
+    Sample { path, bytes: scan::ply::write(&scan::Part::new(kind).cloud(count, noise, 1)) }
+}
+
 /// All sample parts, in order of their paths.
 pub fn all() -> Vec<Sample> {
     let sample = |path, text: String| Sample { path, bytes: text.into_bytes() };
@@ -57,9 +62,13 @@ pub fn all() -> Vec<Sample> {
         sample("hood/hood-ap242.step", sheet::write(&Panel::hood(), Schema::Ap242)),
         sample("hood/hood.step", sheet::write(&Panel::hood(), Schema::Ap214)),
         sample("plate/plate.step", plate::write(Schema::Ap214)),
+        scan("scan/border.ply", Kind::Border, 10_000, 0.05),
         sample("scan/border.step", scanned::plate("border", Kind::Border, Schema::Ap242)),
+        scan("scan/diaphragm.ply", Kind::Diaphragm, 63_160, 0.0005),
         sample("scan/diaphragm.step", scanned::diaphragm(Schema::Ap214)),
+        scan("scan/groove.ply", Kind::Groove, 20_000, 0.05),
         sample("scan/groove.step", scanned::groove(Schema::Ap214)),
+        scan("scan/pad.ply", Kind::Pad, 40_000, 0.05),
         sample("scan/pad.step", scanned::plate("pad", Kind::Pad, Schema::Ap242)),
         sample("trunk/trunk-ap242.step", sheet::write(&Panel::trunk(), Schema::Ap242)),
         sample("trunk/trunk.step", sheet::write(&Panel::trunk(), Schema::Ap214)),

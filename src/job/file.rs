@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 pub use super::deform_file::Deform;
 pub use super::detail_file::DetailTransfer;
 pub use super::paste_file::FeaturePaste;
+pub use super::reconstruct_file::FeatureReconstruction;
 pub use super::scale_file::ConstrainedScale;
 pub use super::simplify_file::Simplify;
 use crate::units::Length;
@@ -213,6 +214,8 @@ pub enum Operation {
     DetailTransfer(Box<DetailTransfer>),
     /// Carry a freeform feature from one face onto another.
     FeaturePaste(Box<FeaturePaste>),
+    /// Rebuild a feature from scanned points.
+    FeatureReconstruction(Box<FeatureReconstruction>),
     /// Remove knots of a face that it can do without.
     Simplify(Simplify),
 }
@@ -226,6 +229,7 @@ impl Operation {
             Self::Deform(_) => "deform",
             Self::DetailTransfer(_) => "detail_transfer",
             Self::FeaturePaste(_) => "feature_paste",
+            Self::FeatureReconstruction(_) => "feature_reconstruction",
             Self::Simplify(_) => "simplify",
         }
     }
@@ -235,7 +239,11 @@ impl Operation {
     pub fn growth(&self) -> f64 {
         match self {
             Self::ConstrainedScale(scale) => scale.factors.0.into_iter().fold(1.0, f64::max),
-            Self::Deform(_) | Self::FeaturePaste(_) | Self::DetailTransfer(_) | Self::Simplify(_) => 1.0,
+            Self::Deform(_)
+            | Self::FeaturePaste(_)
+            | Self::FeatureReconstruction(_)
+            | Self::DetailTransfer(_)
+            | Self::Simplify(_) => 1.0,
         }
     }
 }
@@ -247,6 +255,7 @@ enum OperationKind {
     Deform,
     DetailTransfer,
     FeaturePaste,
+    FeatureReconstruction,
     Simplify,
 }
 
@@ -286,6 +295,11 @@ impl<'de> Deserialize<'de> for Operation {
                         let paste = FeaturePaste::deserialize(rest)?;
                         paste.check().map_err(de::Error::custom)?;
                         Ok(Operation::FeaturePaste(Box::new(paste)))
+                    }
+                    OperationKind::FeatureReconstruction => {
+                        let words = FeatureReconstruction::deserialize(rest)?;
+                        words.check().map_err(de::Error::custom)?;
+                        Ok(Operation::FeatureReconstruction(Box::new(words)))
                     }
                     OperationKind::Simplify => {
                         Simplify::deserialize(rest)?.operation().map_err(de::Error::custom)

@@ -31,6 +31,8 @@ pub mod paste_file;
 mod paste_operate;
 pub mod plan;
 pub mod read;
+pub mod reconstruct_file;
+mod reconstruct_operate;
 pub mod report;
 pub mod restate;
 pub mod run;

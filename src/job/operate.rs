@@ -26,6 +26,19 @@ pub enum OperateError {
     /// The selector of the target does not fit the part.
     #[error("target.face: {0}")]
     TargetFace(SelectError),
+    /// The selector of the primary does not fit the part.
+    #[error("primary.face: {0}")]
+    PrimaryFace(SelectError),
+    /// A cloud cannot be used.
+    #[error("cloud: {file}: {reason}")]
+    CloudFile {
+        /// The file.
+        file: String,
+        /// Stable code.
+        code: &'static str,
+        /// Why.
+        reason: String,
+    },
     /// The selector of the source does not fit its part.
     #[error("source.face: {0}")]
     SourceFace(SelectError),
@@ -87,9 +100,11 @@ impl OperateError {
             | Self::TargetCurve(SelectError::SeveralCurves { .. })
             | Self::SourceCurve(SelectError::SeveralCurves { .. })
             | Self::TargetFace(SelectError::Several { .. })
+            | Self::PrimaryFace(SelectError::Several { .. })
             | Self::SourceFace(SelectError::Several { .. }) => "select.several",
             Self::Face(_)
             | Self::TargetFace(_)
+            | Self::PrimaryFace(_)
             | Self::SourceFace(_)
             | Self::TargetCurve(_)
             | Self::SourceCurve(_) => "select.no-match",
@@ -100,6 +115,7 @@ impl OperateError {
             Self::Line { .. } => "deform.no-line",
             Self::Hold(_) => "select.no-hold",
             Self::Operation(error) => error.code(),
+            Self::CloudFile { code, .. } => code,
             Self::NoFace => "select.no-face",
         }
     }
@@ -129,6 +145,16 @@ pub fn operate(model: &Model, source: &Source, operation: &Operation) -> Result<
         Operation::FeaturePaste(words) => {
             let planned = super::paste_operate::planned(model, words)?;
             Ok(reported("feature_paste", planned.change_set, &planned.measures, &planned.notes, source))
+        }
+        Operation::FeatureReconstruction(words) => {
+            let planned = super::reconstruct_operate::planned(model, words)?;
+            Ok(reported(
+                "feature_reconstruction",
+                planned.change_set,
+                &planned.measures,
+                &planned.notes,
+                source,
+            ))
         }
         Operation::Simplify(words) => {
             let planned = words.planned(model)?;

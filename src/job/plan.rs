@@ -105,6 +105,7 @@ fn files(operation: &mut Operation) -> Vec<&mut String> {
     match operation {
         Operation::ConstrainedScale(_) | Operation::Simplify(_) => Vec::new(),
         Operation::Deform(deform) => deform.files().collect(),
+        Operation::FeatureReconstruction(words) => words.files().collect(),
         Operation::DetailTransfer(transfer) => {
             let source = &mut transfer.source;
             source.file.as_mut().or(source.detail.as_mut()).into_iter().collect()

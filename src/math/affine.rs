@@ -123,6 +123,14 @@ pub fn cofactor(m: &Matrix3<f64>) -> Matrix3<f64> {
 /// Cosine below which two unit vectors count as opposite, where the rotation's axis is lost.
 const OPPOSITE: f64 = -0.999;
 
+/// Rotation about a unit vector (Rodrigues).
+#[must_use]
+pub fn rotation(axis: &Vector3<f64>, angle: f64) -> Matrix3<f64> {
+    let (sine, cosine) = angle.sin_cos();
+    let k = axis.cross_matrix();
+    Matrix3::identity() + k * sine + k * k * (1.0 - cosine)
+}
+
 /// The least rotation that takes the direction of `a` to that of `b`; a half turn about `fallback` made
 /// perpendicular to `a` when they are opposite. Inputs need not be unit; zero vectors give the identity.
 #[must_use]

@@ -14,7 +14,7 @@ pub mod quadrature;
 pub mod rigid_fit;
 pub mod sparse;
 
-pub use affine::{Affine, cofactor, minimal_rotation};
+pub use affine::{Affine, cofactor, minimal_rotation, rotation};
 pub use bounds::BoundingBox;
 pub use circle_fit::PlaneCircle;
 pub use frame::Frame;

@@ -1,5 +1,6 @@
 //! Why a feature cannot be reconstructed. Each variant has a stable code.
 
+use crate::cloud::placement::Misplacement;
 use crate::math::sparse::SingularSystem;
 use crate::ops::force_density::ForceDensityError;
 
@@ -125,6 +126,24 @@ pub enum ReconstructionError {
         /// Number of the other.
         second: usize,
     },
+    /// The cloud is not one of the part.
+    #[error(transparent)]
+    Misplaced(#[from] Misplacement),
+    /// All points beside the primary bend alike.
+    #[error(
+        "no blend was found in the cloud: the points off the primary bend alike (the two kinds differ by a factor of \
+         {separation:.2}); give the points of the blend in a file of their own or by a label"
+    )]
+    NoBlend {
+        /// Ratio of the two kinds of curvature.
+        separation: f64,
+    },
+    /// The primary cannot be worked on.
+    #[error("the primary cannot be worked on: {reason}")]
+    Primary {
+        /// Lower-case fragment.
+        reason: String,
+    },
     /// Where points of the secondary lie over the primary is not defined.
     #[error(
         "{share:.0} % of the objective's points are so far from the primary, against its radius of curvature, that no point of \
@@ -185,6 +204,9 @@ impl ReconstructionError {
             Self::Trim { .. } => "reconstruct.trim",
             Self::RegionGoesOn { .. } => "reconstruct.region-goes-on",
             Self::FeaturesOverlap { .. } => "reconstruct.features-overlap",
+            Self::Misplaced(error) => error.code(),
+            Self::NoBlend { .. } => "reconstruct.no-blend",
+            Self::Primary { .. } => "reconstruct.primary",
             Self::HeightExceedsCurvature { .. } => "reconstruct.height-exceeds-curvature",
             Self::NoCharacterLine { .. } => "reconstruct.no-character-line",
             Self::LinesCross { .. } => "reconstruct.lines-cross",

@@ -306,7 +306,7 @@ impl Pass {
 }
 
 /// The cubic through the points of a line.
-fn cubic(line: &ParameterLine) -> NurbsCurve2 {
+pub(super) fn cubic(line: &ParameterLine) -> NurbsCurve2 {
     let through = match line.closure {
         Closure::Closed => periodic_cubic,
         Closure::Open => open_cubic,

@@ -20,7 +20,7 @@ use super::{Feature, Ground, PasteError, contour::Plane};
 use crate::brep::{BodyKind, FaceId};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::geometry::nurbs::NurbsSurface;
-use crate::math::{Affine, Matrix3, Point3, Vector3};
+use crate::math::{Affine, rotation, Matrix3, Point3, Vector3};
 use crate::model::change_set::NewBound;
 use crate::model::{ChangeSet, Model};
 use crate::ops::OperationError;
@@ -353,13 +353,6 @@ pub fn circular_pattern(
         Place { at: map.point(&first.at), along: Some(turn * along), ..*first }
     };
     (0..count).map(place).collect()
-}
-
-/// Rotation about a unit vector (Rodrigues).
-fn rotation(axis: &Vector3<f64>, angle: f64) -> Matrix3<f64> {
-    let (sine, cosine) = angle.sin_cos();
-    let k = axis.cross_matrix();
-    Matrix3::identity() + k * sine + k * k * (1.0 - cosine)
 }
 
 /// Direction of the target's `u` at a point of a face: where a pattern begins to turn.
