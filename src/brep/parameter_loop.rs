@@ -12,7 +12,8 @@ use super::{Brep, CoedgeId, EdgeId, FaceId, LoopId};
 use crate::geometry::nurbs::{NurbsSurface, SurfaceLocator, SurfaceProjection, Wrap};
 use crate::geometry::parameters::unwrapped;
 use crate::geometry::{Curve2d, Surface};
-use crate::math::{Point2, Point3};
+use crate::math::{Point2, Point3, Vector3};
+use std::borrow::Cow;
 use std::cell::OnceCell;
 
 /// How loops are sampled.
@@ -119,18 +120,23 @@ pub fn parameter_loops(
     face: FaceId,
     sampling: &LoopSampling,
 ) -> Result<Vec<ParameterLoop>, ParameterLoopError> {
-    parameter_loops_with(brep, face, sampling, &|edge| sample_edge(brep, edge, &sampling.edge))
+    parameter_loops_with(brep, face, sampling, &|edge| {
+        sample_edge(brep, edge, &sampling.edge).map(Cow::Owned)
+    })
 }
+
+/// Points of an edge from its start to its end, where they are known.
+pub type Samples<'f, 's> = dyn Fn(EdgeId) -> Option<Cow<'s, [EdgePoint]>> + 'f;
 
 /// As [`parameter_loops`], with the points of each edge, from its start to its end, given by the caller.
 ///
 /// # Errors
 /// See [`ParameterLoopError`].
-pub fn parameter_loops_with(
+pub fn parameter_loops_with<'s>(
     brep: &Brep,
     face: FaceId,
     sampling: &LoopSampling,
-    samples: &dyn Fn(EdgeId) -> Option<Vec<EdgePoint>>,
+    samples: &Samples<'_, 's>,
 ) -> Result<Vec<ParameterLoop>, ParameterLoopError> {
     let surface = match brep.surface_of(face) {
         crate::geometry::Carried::Read(surface) => surface,
@@ -212,7 +218,7 @@ impl<'a> Walk<'a> {
         &self,
         brep: &Brep,
         id: LoopId,
-        samples: &dyn Fn(EdgeId) -> Option<Vec<EdgePoint>>,
+        samples: &Samples<'_, '_>,
     ) -> Result<ParameterLoop, ParameterLoopError> {
         let bound = &brep.loops[id];
         let mut order = bound.coedges.clone();
@@ -225,17 +231,19 @@ impl<'a> Walk<'a> {
         for coedge in order {
             let use_of = &brep.coedges[coedge];
             let edge = use_of.edge;
-            let mut along =
+            let along =
                 samples(edge).filter(|s| s.len() >= 2).ok_or(ParameterLoopError::UnreadCurve { edge })?;
-            if use_of.forward != bound.forward {
-                along.reverse();
-            }
             let entry = before.as_ref().and_then(|(_, places)| places.last()).copied();
-            let mut places = self.trace(&along, use_of.pcurve.as_ref(), entry);
+            let pcurve = use_of.pcurve.as_ref().filter(|p| self.agrees(p, &along));
+            let mut places = if use_of.forward == bound.forward {
+                self.trace(along.iter(), pcurve, entry)
+            } else {
+                self.trace(along.iter().rev(), pcurve, entry)
+            };
             if places.iter().any(|p| !(p.u.is_finite() && p.v.is_finite())) {
                 return Err(ParameterLoopError::NotFinite { coedge });
             }
-            self.halve(brep, edge, use_of.pcurve.as_ref(), &mut places);
+            self.halve(brep, edge, pcurve, &mut places);
             if let Some((last_edge, last)) = &before {
                 self.join(last, &mut places, *last_edge == edge);
             }
@@ -267,14 +275,18 @@ impl<'a> Walk<'a> {
     }
 
     /// Parameters of points along a coedge, continuous from one to the next.
-    fn trace(&self, along: &[EdgePoint], pcurve: Option<&Curve2d>, entry: Option<Place>) -> Vec<Place> {
-        let pcurve = pcurve.filter(|p| self.agrees(p, along));
+    fn trace<'p>(
+        &self,
+        along: impl ExactSizeIterator<Item = &'p EdgePoint>,
+        pcurve: Option<&Curve2d>,
+        entry: Option<Place>,
+    ) -> Vec<Place> {
         let mut places: Vec<Place> = Vec::with_capacity(along.len());
         let mut seed = entry.map(|e| (e.u, e.v));
         for at in along {
             let place = match pcurve {
                 Some(pcurve) => self.on_pcurve(*at, pcurve, seed),
-                None => self.project(*at, seed),
+                None => self.project(*at, seed, onward(&places, at.t)),
             };
             // A pole has no say in where the walk goes on, but for the other parameter.
             seed = match seed {
@@ -309,34 +321,40 @@ impl<'a> Walk<'a> {
         self.place(at, u, v)
     }
 
-    fn project(&self, at: EdgePoint, seed: Option<(f64, f64)>) -> Place {
-        let (u, v) = match (&self.locator, seed) {
-            (Some(locator), Some(seed)) => {
-                let wrapped = self.in_domain(seed);
-                let found = locator.closest_near(&at.point, wrapped, self.lost);
-                (found.u, found.v)
+    /// The closest place to a point, next to the one before, `seed`; `guess` is where the search had better begin.
+    fn project(&self, at: EdgePoint, seed: Option<(f64, f64)>, guess: Option<(f64, f64)>) -> Place {
+        if let Some(locator) = &self.locator {
+            let found = match seed {
+                Some(seed) => {
+                    let begin = self.in_domain(guess.unwrap_or(seed));
+                    locator.closest_near(&at.point, begin, self.lost)
+                }
+                None => locator.built().closest(&at.point),
+            };
+            let (u, v) = self.near(seed, found.u, found.v);
+            return self.seen(at, (u, v), found.point, found.tangents);
+        }
+        let mut found = self.surface.parameters_of(&at.point, seed);
+        if seed.is_some() && self.is_searched() {
+            let away = (self.surface.point(found.0, found.1) - at.point).norm();
+            if away > self.lost {
+                found = self.surface.parameters_of(&at.point, None);
             }
-            (Some(locator), None) => {
-                let found = locator.built().closest(&at.point);
-                (found.u, found.v)
-            }
-            (None, Some(seed)) => {
-                let found = self.surface.parameters_of(&at.point, Some(seed));
-                let away = (self.surface.point(found.0, found.1) - at.point).norm();
-                let searched = !matches!(
-                    self.surface,
-                    Surface::Plane(_)
-                        | Surface::Cylinder { .. }
-                        | Surface::Cone { .. }
-                        | Surface::Sphere { .. }
-                        | Surface::Torus { .. }
-                );
-                if searched && away > self.lost { self.surface.parameters_of(&at.point, None) } else { found }
-            }
-            (None, None) => self.surface.parameters_of(&at.point, None),
-        };
-        let (u, v) = self.near(seed, u, v);
+        }
+        let (u, v) = self.near(seed, found.0, found.1);
         self.place(at, u, v)
+    }
+
+    /// Whether parameters are found by a search that a bad seed may mislead.
+    fn is_searched(&self) -> bool {
+        !matches!(
+            self.surface,
+            Surface::Plane(_)
+                | Surface::Cylinder { .. }
+                | Surface::Cone { .. }
+                | Surface::Sphere { .. }
+                | Surface::Torus { .. }
+        )
     }
 
     fn in_domain(&self, (u, v): (f64, f64)) -> (f64, f64) {
@@ -360,11 +378,22 @@ impl<'a> Walk<'a> {
     fn place(&self, at: EdgePoint, u: f64, v: f64) -> Place {
         let (wu, wv) = self.in_domain((u, v));
         let d = self.surface.derivatives(wu, wv);
+        self.seen(at, (u, v), d.point, [d.du, d.dv])
+    }
+
+    /// The place of a point of an edge where the surface has the given point and tangents.
+    fn seen(
+        &self,
+        at: EdgePoint,
+        (u, v): (f64, f64),
+        foot: Point3<f64>,
+        [du, dv]: [Vector3<f64>; 2],
+    ) -> Place {
         let ((u0, u1), (v0, v1)) = self.surface.domain();
         // The whole parameter line through the point is shorter than the tolerance, as far as its speed tells.
         let shrunk = |speed: f64, length: f64, pole: f64| length.is_finite() && speed * length <= pole;
-        let singular = (shrunk(d.du.norm(), u1 - u0, self.pole.0), shrunk(d.dv.norm(), v1 - v0, self.pole.1));
-        Place { at, u, v, gap: (d.point - at.point).norm(), singular }
+        let singular = (shrunk(du.norm(), u1 - u0, self.pole.0), shrunk(dv.norm(), v1 - v0, self.pole.1));
+        Place { at, u, v, gap: (foot - at.point).norm(), singular }
     }
 
     /// Halves chords until the polygon follows the loop in the parameter plane.
@@ -374,8 +403,6 @@ impl<'a> Walk<'a> {
             return;
         }
         let Some(curve) = brep.curve_of(edge).read() else { return };
-        let along: Vec<EdgePoint> = places.iter().map(|p| p.at).collect();
-        let pcurve = pcurve.filter(|p| self.agrees(p, &along));
         for _ in 0..MAX_ROUNDS {
             let mut finer = vec![places[0]];
             for pair in places.windows(2) {
@@ -385,7 +412,7 @@ impl<'a> Walk<'a> {
                 let at = EdgePoint { t, point: curve.point_wrapped(t) };
                 let middle = match pcurve {
                     Some(pcurve) => self.on_pcurve(at, pcurve, Some((u, v))),
-                    None => self.project(at, Some((u, v))),
+                    None => self.project(at, Some((u, v)), None),
                 };
                 let off = (middle.u - u).abs() > limit_u || (middle.v - v).abs() > limit_v;
                 if off && !middle.is_singular() {
@@ -476,6 +503,14 @@ impl Place {
     fn on(&self, coedge: CoedgeId) -> LoopPoint {
         LoopPoint { u: self.u, v: self.v, coedge, t: self.at.t, point: self.at.point, gap: self.gap }
     }
+}
+
+/// Where a walk at an even pace comes next, at parameter `t` of the edge.
+fn onward(places: &[Place], t: f64) -> Option<(f64, f64)> {
+    let [.., before, last] = places else { return None };
+    let share = (t - last.at.t) / (last.at.t - before.at.t);
+    let regular = !before.is_singular() && !last.is_singular() && share.is_finite();
+    regular.then(|| (last.u + (last.u - before.u) * share, last.v + (last.v - before.v) * share))
 }
 
 /// Gives poles the lost parameter of their nearest neighbour on the same coedge.

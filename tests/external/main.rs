@@ -9,6 +9,7 @@ use std::process::Command;
 use serde_json::Value;
 
 mod measures;
+mod referee;
 
 #[path = "../support/mod.rs"]
 #[allow(dead_code, reason = "shared with other test binaries")]

@@ -27,6 +27,7 @@ use column::{Along, Column, between, breaks};
 pub use moments::MassProperties;
 use moments::Sums;
 use path::{Foot, Path, Pick, Place, paths};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// Why something has no mass properties.
@@ -63,6 +64,19 @@ pub struct Quadrature {
     pub target: f64,
     /// Pieces between knots that a column, or an edge, is cut into at most: beyond, knots are passed over.
     pub pieces: usize,
+    /// Points of one piece of a column at most.
+    pub points: usize,
+    /// Where an edge is between the points of its loop.
+    pub between: Between,
+}
+
+/// Where an edge is in the parameter plane between the points of its loop, whose places are known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Between {
+    /// Where the points of its curve are projected to.
+    Feet,
+    /// On cubics through the places: no projection, and off by some millionths of a quarter of a turn.
+    Cubics,
 }
 
 impl Quadrature {
@@ -72,19 +86,26 @@ impl Quadrature {
     /// As exactly as makes sense, for a file of the given uncertainty.
     #[must_use]
     pub fn exact(tolerance: f64) -> Self {
-        Self { tolerance, target: Self::EXACT, pieces: usize::MAX }
+        Self { target: Self::EXACT, ..Self::good(tolerance) }
     }
 
     /// Good to a millionth or better, where surfaces are smooth between their knots.
     #[must_use]
     pub fn good(tolerance: f64) -> Self {
-        Self { tolerance, target: 1e-8, pieces: usize::MAX }
+        let (pieces, points) = (usize::MAX, usize::MAX);
+        Self { tolerance, target: 1e-8, pieces, points, between: Between::Feet }
     }
 
-    /// Good to some parts in a hundred, at a small part of the cost: to tell a sign.
+    /// Good to some parts in a hundred, at a small part of the cost.
     #[must_use]
     pub fn rough(tolerance: f64) -> Self {
-        Self { tolerance, target: 1e-3, pieces: 6 }
+        Self { target: 1e-3, pieces: 6, ..Self::good(tolerance) }
+    }
+
+    /// As rough as may be to tell the sign of a volume, without a projection.
+    #[must_use]
+    pub fn of_sign(tolerance: f64) -> Self {
+        Self { points: 4, between: Between::Cubics, ..Self::rough(tolerance) }
     }
 }
 
@@ -120,11 +141,29 @@ pub fn of_shell(
     quadrature: &Quadrature,
     reference: Point3<f64>,
 ) -> Result<MassProperties, MassPropertiesError> {
+    let sampling = LoopSampling::of_tolerance(quadrature.tolerance);
+    let loops = |face| parameter_loops(brep, face, &sampling).map(Cow::Owned);
+    of_shell_with(brep, shell, quadrature, reference, &loops)
+}
+
+/// Loops of a face in its parameter plane, or why there are none.
+pub type LoopsOf<'f, 'l> = dyn Fn(FaceId) -> Result<Cow<'l, [ParameterLoop]>, ParameterLoopError> + 'f;
+
+/// As [`of_shell`], with the loops given.
+///
+/// # Errors
+/// See [`MassPropertiesError`].
+pub fn of_shell_with(
+    brep: &Brep,
+    shell: ShellId,
+    quadrature: &Quadrature,
+    reference: Point3<f64>,
+    loops: &LoopsOf<'_, '_>,
+) -> Result<MassProperties, MassPropertiesError> {
     let mut sum = MassProperties::none(reference);
     let uses = uses(brep, shell);
     for &face in &brep.shells[shell].faces {
-        let loops = parameter_loops(brep, face, &LoopSampling::of_tolerance(quadrature.tolerance))
-            .map_err(|source| MassPropertiesError::Loops { face, source })?;
+        let loops = loops(face).map_err(|source| MassPropertiesError::Loops { face, source })?;
         let side = side(brep, face, &uses);
         sum += within(brep, face, &loops, quadrature, reference, side)?;
     }
@@ -206,8 +245,7 @@ fn within(
     let (mut sums, mut errors) = (Sums::ZERO, Sums::ZERO);
     if bounded {
         let foot = Foot::new(surface);
-        let boundary: Vec<Path<'_>> =
-            loops.iter().flat_map(|l| paths(brep, &foot, l, quadrature.tolerance)).collect();
+        let boundary: Vec<Path<'_>> = loops.iter().flat_map(|l| paths(brep, &foot, l, quadrature)).collect();
         let base = region.base(loops, &boundary, sign)?;
         (sums, errors) = region.around(&foot, &boundary, base);
         // The paths run with the face to their left against the face's normal.
@@ -333,7 +371,7 @@ impl<'a> Region<'a> {
         Ok(Self {
             surface,
             face,
-            column: Column::new(surface, along, reference, quadrature.pieces),
+            column: Column::new(surface, along, reference, quadrature),
             accuracy,
             pieces: quadrature.pieces,
         })
@@ -374,8 +412,8 @@ impl<'a> Region<'a> {
     }
 
     fn open_side(&self, upper: bool) -> Result<f64, MassPropertiesError> {
-        if let Surface::Cone { radius, semi_angle, .. } = self.surface {
-            return Ok(-radius / semi_angle.tan());
+        if let Some(apex) = self.surface.apex() {
+            return Ok(apex);
         }
         let (us, vs) = self.surface.domain();
         let (low, high) = if self.column.along == Along::V { vs } else { us };

@@ -1,5 +1,6 @@
 //! The boundary of a face as paths in the parameter plane: along coedges, and straight from one to the next.
 
+use super::{Between, Quadrature};
 use crate::brep::{Brep, CoedgeId, LoopPoint, ParameterLoop, edge_range, inner_breaks};
 use crate::geometry::nurbs::Wrap;
 use crate::geometry::parameters::unwrapped;
@@ -30,6 +31,7 @@ pub(super) struct EdgePath<'a> {
     places: Vec<(f64, Place)>,
     /// Distance from the surface beyond which a projection is not believed.
     lost: f64,
+    between: Between,
 }
 
 /// Finds parameters of points near given ones.
@@ -127,8 +129,36 @@ impl EdgePath<'_> {
         (a.0 + (b.0 - a.0) * part, a.1 + (b.1 - a.1) * part)
     }
 
+    /// On the cubic through the four known places about `t`, and how it moves with `t`.
+    fn on_cubic(&self, t: f64) -> (Place, Place) {
+        let up = self.range().0 <= self.range().1;
+        let after = self.places.partition_point(|&(s, _)| if up { s <= t } else { s >= t });
+        let count = self.places.len().min(4);
+        let first = after.saturating_sub(2).min(self.places.len() - count);
+        let near = &self.places[first..first + count];
+        // Newton's differences, in both parameters at once; then Horner's scheme with its derivative.
+        let mut differences: Vec<Place> = near.iter().map(|&(_, place)| place).collect();
+        for order in 1..count {
+            for i in (order..count).rev() {
+                let step = near[i].0 - near[i - order].0;
+                let (a, b) = (differences[i - 1], differences[i]);
+                differences[i] = ((b.0 - a.0) / step, (b.1 - a.1) / step);
+            }
+        }
+        let (mut place, mut speed) = (differences[count - 1], (0.0, 0.0));
+        for i in (0..count - 1).rev() {
+            let away = t - near[i].0;
+            speed = (speed.0 * away + place.0, speed.1 * away + place.1);
+            place = (place.0 * away + differences[i].0, place.1 * away + differences[i].1);
+        }
+        (place, speed)
+    }
+
     /// The place of the curve's point.
     fn place(&self, foot: &Foot<'_>, t: f64) -> Place {
+        if self.between == Between::Cubics {
+            return self.on_cubic(t).0;
+        }
         let guess = self.guess(t);
         let point = self.curve.point_wrapped(t);
         let found = foot.of(&point, guess);
@@ -143,6 +173,9 @@ impl EdgePath<'_> {
     /// The foot of a point off the surface moves by the Hessian of the distance, not by the metric alone; at a
     /// border that holds it, along the border.
     pub(super) fn place_and_speed(&self, foot: &Foot<'_>, t: f64) -> (Place, Place) {
+        if self.between == Between::Cubics {
+            return self.on_cubic(t);
+        }
         let place = self.place(foot, t);
         let (u, v) = foot.surface_place(place);
         let d = foot.surface.derivatives(u, v);
@@ -249,12 +282,13 @@ pub(super) fn paths<'a>(
     brep: &'a Brep,
     foot: &Foot<'_>,
     of: &ParameterLoop,
-    tolerance: f64,
+    quadrature: &Quadrature,
 ) -> Vec<Path<'a>> {
+    let lost = ASTRAY * of.gap.max(quadrature.tolerance);
     let mut paths: Vec<Path<'a>> = Vec::new();
     let (mut start, mut here): (Option<Place>, Option<Place>) = (None, None);
     for points in of.points.chunk_by(|a, b| a.coedge == b.coedge) {
-        let Some(edge) = edge_path(brep, foot, points, ASTRAY * of.gap.max(tolerance)) else { continue };
+        let Some(edge) = edge_path(brep, foot, points, lost, quadrature.between) else { continue };
         start = start.or(Some(edge.first()));
         paths.extend(here.and_then(|from| straight(from, edge.first())));
         here = Some(edge.last());
@@ -270,7 +304,13 @@ fn straight<'a>(from: Place, to: Place) -> Option<Path<'a>> {
     (from != to).then_some(Path::Straight(from, to))
 }
 
-fn edge_path<'a>(brep: &'a Brep, foot: &Foot<'_>, points: &[LoopPoint], lost: f64) -> Option<EdgePath<'a>> {
+fn edge_path<'a>(
+    brep: &'a Brep,
+    foot: &Foot<'_>,
+    points: &[LoopPoint],
+    lost: f64,
+    between: Between,
+) -> Option<EdgePath<'a>> {
     let coedge: CoedgeId = points[0].coedge;
     let edge = brep.coedges[coedge].edge;
     let curve = brep.curve_of(edge).read()?;
@@ -282,12 +322,10 @@ fn edge_path<'a>(brep: &'a Brep, foot: &Foot<'_>, points: &[LoopPoint], lost: f6
         if (from - range.start).abs() <= (from - range.end).abs() { range.end } else { range.start }
     };
     if places[places.len() - 1].0 != end {
-        let near = EdgePath { curve, places, lost };
-        let seed = near.last();
+        let seed = places[places.len() - 1].1;
         let found = foot.of(&curve.point_wrapped(end), seed);
         let found = if found.0.is_finite() && found.1.is_finite() { found } else { seed };
-        places = near.places;
         places.push((end, found));
     }
-    (places.len() >= 2).then_some(EdgePath { curve, places, lost })
+    (places.len() >= 2).then_some(EdgePath { curve, places, lost, between })
 }

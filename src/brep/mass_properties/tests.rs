@@ -5,7 +5,13 @@ use crate::geometry::{Carried, Curve};
 use crate::math::{Frame, Matrix3, Vector3};
 use std::f64::consts::{PI, SQRT_2};
 
-const EXACT: Quadrature = Quadrature { tolerance: 1e-6, target: Quadrature::EXACT, pieces: usize::MAX };
+const EXACT: Quadrature = Quadrature {
+    tolerance: 1e-6,
+    target: Quadrature::EXACT,
+    pieces: usize::MAX,
+    points: usize::MAX,
+    between: Between::Feet,
+};
 
 /// Builds one solid face by face.
 struct Builder {
@@ -66,6 +72,8 @@ impl Builder {
     /// Area, volume, height of the centroid and inertia about the axes against closed forms.
     fn assert(&self, area: f64, volume: f64, height: f64, inertia: [f64; 3]) {
         let found = of_body(&self.brep, self.body, &EXACT).expect("it is measured");
+        let rough = of_body(&self.brep, self.body, &Quadrature::of_sign(1e-6)).expect("it is measured");
+        assert!((rough.volume() - volume).abs() < 0.01 * volume.abs(), "{} {volume}", rough.volume());
         let near = |found: f64, expected: f64, what: &str| {
             let off = (found - expected).abs();
             assert!(off <= 1e-8 * expected.abs().max(1.0), "{what}: {found}, expected {expected}");
