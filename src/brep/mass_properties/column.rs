@@ -1,6 +1,7 @@
 //! Integrals along one parameter of a surface, the other held: what the boundary integral is taken of.
 
 use super::Quadrature;
+use super::adaptive::Accuracy;
 use super::moments::Sums;
 use crate::brep::inner_breaks;
 use crate::geometry::{Curve, Surface};
@@ -20,6 +21,10 @@ const BEYOND: usize = 3;
 const RATIONAL: usize = 3;
 /// Greatest count of points for one span.
 const MAX_POINTS: usize = 16;
+/// Columns that tell how finely a surface has to be cut.
+const PROBES: usize = 5;
+/// Parts of one piece at most.
+const MAX_PARTS: usize = 32;
 /// Greatest count of pieces of one column; a bound for hostile files.
 const MAX_PIECES: usize = 1 << 14;
 
@@ -48,6 +53,8 @@ pub(super) struct Column<'a> {
     pub(super) period: Option<f64>,
     wraps: bool,
     pieces: usize,
+    /// Even parts that each piece between breaks is cut into.
+    parts: usize,
 }
 
 impl Along {
@@ -90,7 +97,20 @@ impl<'a> Column<'a> {
         let across = (rule(points_across), rule(points_across.saturating_sub(2).max(1)));
         let fine = rule(points);
         let pieces = quadrature.pieces;
-        Self { surface, along, reference, fine, coarse, across, breaks, period, wraps, pieces }
+        Self { surface, along, reference, fine, coarse, across, breaks, period, wraps, pieces, parts: 1 }
+    }
+
+    /// Cuts pieces into parts until the rules are at one over a rectangle, as far as some columns in it tell.
+    pub(super) fn cut_finely(&mut self, across: (f64, f64), along: (f64, f64), accuracy: &Accuracy) {
+        let width = across.1 - across.0;
+        let off = |column: &Self| {
+            let places = (0..PROBES).map(|i| across.0 + width * ((i as f64 + 0.5) / PROBES as f64));
+            let errors = places.map(|at| column.error(at, along.0, along.1) * width);
+            errors.map(|error| error.relative(accuracy.size, accuracy.reach)).fold(0.0, f64::max)
+        };
+        while self.parts < MAX_PARTS && off(self) > accuracy.target {
+            self.parts *= 2;
+        }
     }
 
     /// The integral over a rectangle between lines, and how far coarser rules are off there.
@@ -181,8 +201,9 @@ impl<'a> Column<'a> {
         stops.extend(between(&self.breaks, self.period, low, high));
         stops.push(high);
         for &end in &super::thinned(&stops, self.pieces)[1..] {
-            let (middle, half) = (0.5 * (start + end), 0.5 * (end - start));
-            if half > 0.0 {
+            let half = 0.5 * (end - start) / self.parts as f64;
+            for part in (0..self.parts).filter(|_| half > 0.0) {
+                let middle = start + half * (2 * part + 1) as f64;
                 for &(x, weight) in rule {
                     sum += self.element(at, middle + half * x) * (weight * half * sign);
                 }

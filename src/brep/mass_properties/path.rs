@@ -1,7 +1,7 @@
 //! The boundary of a face as paths in the parameter plane: along coedges, and straight from one to the next.
 
 use super::{Between, Quadrature};
-use crate::brep::{Brep, CoedgeId, LoopPoint, ParameterLoop, edge_range, inner_breaks};
+use crate::brep::{Brep, LoopPoint, ParameterLoop, edge_range, inner_breaks};
 use crate::geometry::nurbs::Wrap;
 use crate::geometry::parameters::unwrapped;
 use crate::geometry::{Curve, Surface};
@@ -50,6 +50,8 @@ const HELD: f64 = 1e-6;
 const CROSSING_STEPS: usize = 40;
 /// Part of an edge's range within which a crossing is found, and two breaks are one.
 const CROSSING: f64 = 1e-10;
+/// Ratio of the steps between places above which the path is broken.
+const CLOSER: f64 = 1.5;
 /// Factor on the greatest gap of a loop beyond which a projection went astray.
 const ASTRAY: f64 = 10.0;
 
@@ -217,6 +219,13 @@ impl EdgePath<'_> {
         let (first, last) = self.range();
         let (low, high) = (first.min(last), first.max(last));
         let mut breaks = inner_breaks(self.curve, low, high);
+        // Places stand closer where the path turns quickly, as beside a pole.
+        for near in self.places.windows(3) {
+            let (before, after) = ((near[1].0 - near[0].0).abs(), (near[2].0 - near[1].0).abs());
+            if before.max(after) > CLOSER * before.min(after) {
+                breaks.push(near[1].0);
+            }
+        }
         for (pick, lines) in lines {
             for pair in self.places.windows(2) {
                 let (x, y) = (pick(pair[0].1), pick(pair[1].1));
@@ -287,12 +296,17 @@ pub(super) fn paths<'a>(
     let lost = ASTRAY * of.gap.max(quadrature.tolerance);
     let mut paths: Vec<Path<'a>> = Vec::new();
     let (mut start, mut here): (Option<Place>, Option<Place>) = (None, None);
-    for points in of.points.chunk_by(|a, b| a.coedge == b.coedge) {
-        let Some(edge) = edge_path(brep, foot, points, lost, quadrature.between) else { continue };
-        start = start.or(Some(edge.first()));
-        paths.extend(here.and_then(|from| straight(from, edge.first())));
-        here = Some(edge.last());
-        paths.push(Path::Edge(edge));
+    for of_coedge in of.points.chunk_by(|a, b| a.coedge == b.coedge) {
+        // Where an edge passes through a pole, it stands there twice.
+        let mut pieces = of_coedge.chunk_by(|a, b| a.t != b.t).peekable();
+        while let Some(points) = pieces.next() {
+            let end = end_of(brep, of_coedge).filter(|_| pieces.peek().is_none());
+            let Some(edge) = edge_path(brep, foot, points, end, (lost, quadrature.between)) else { continue };
+            start = start.or(Some(edge.first()));
+            paths.extend(here.and_then(|from| straight(from, edge.first())));
+            here = Some(edge.last());
+            paths.push(Path::Edge(edge));
+        }
     }
     if let (Some(from), Some(start)) = (here, start) {
         paths.extend(straight(from, (start.0 + of.winding.0, start.1 + of.winding.1)));
@@ -304,28 +318,26 @@ fn straight<'a>(from: Place, to: Place) -> Option<Path<'a>> {
     (from != to).then_some(Path::Straight(from, to))
 }
 
+/// Parameter at which a coedge ends: its last point is the first of the next one, by that one's parameter.
+fn end_of(brep: &Brep, points: &[LoopPoint]) -> Option<f64> {
+    let range = edge_range(brep, brep.coedges[points[0].coedge].edge)?;
+    let from = points[0].t;
+    Some(if (from - range.start).abs() <= (from - range.end).abs() { range.end } else { range.start })
+}
+
 fn edge_path<'a>(
     brep: &'a Brep,
     foot: &Foot<'_>,
     points: &[LoopPoint],
-    lost: f64,
-    between: Between,
+    end: Option<f64>,
+    (lost, between): (f64, Between),
 ) -> Option<EdgePath<'a>> {
-    let coedge: CoedgeId = points[0].coedge;
-    let edge = brep.coedges[coedge].edge;
-    let curve = brep.curve_of(edge).read()?;
-    let range = edge_range(brep, edge)?;
+    let curve = brep.curve_of(brep.coedges[points[0].coedge].edge).read()?;
     let mut places: Vec<(f64, Place)> = points.iter().map(|p| (p.t, (p.u, p.v))).collect();
-    // The last point of a coedge is the first of the next one, by that one's parameter.
-    let end = {
-        let from = places[0].0;
-        if (from - range.start).abs() <= (from - range.end).abs() { range.end } else { range.start }
-    };
-    if places[places.len() - 1].0 != end {
-        let seed = places[places.len() - 1].1;
-        let found = foot.of(&curve.point_wrapped(end), seed);
-        let found = if found.0.is_finite() && found.1.is_finite() { found } else { seed };
-        places.push((end, found));
+    let last = places[places.len() - 1];
+    if let Some(end) = end.filter(|&end| end != last.0) {
+        let found = foot.of(&curve.point_wrapped(end), last.1);
+        places.push((end, if found.0.is_finite() && found.1.is_finite() { found } else { last.1 }));
     }
     (places.len() >= 2).then_some(EdgePath { curve, places, lost, between })
 }

@@ -56,13 +56,13 @@ pub(super) fn loops(context: &mut Context) -> Result<Vec<Vec<Corner>>, Tessellat
     let samples = |edge: EdgeId| edges.get(&edge).map(|shared| Cow::Borrowed(shared.samples.as_slice()));
     let found = parameter_loops_with(brep, face, &sampling, &samples)
         .map_err(|source| TessellateError::Bounds { face, source })?;
+    // Places between the samples only tell the way, and are no vertices.
     let corners =
-        |l: &ParameterLoop| l.points.iter().map(|p| corner(brep, p, edges)).collect::<Option<Vec<_>>>();
+        |l: &ParameterLoop| l.points.iter().filter_map(|p| corner(brep, p, edges)).collect::<Vec<_>>();
     let mut loops = Vec::with_capacity(found.len());
     let mut winding = Vec::new();
     for parameter_loop in &found {
-        let mut corners =
-            corners(parameter_loop).expect("the points are samples of the edges that were given");
+        let mut corners = corners(parameter_loop);
         let turns = [parameter_loop.winding.0, parameter_loop.winding.1];
         spread(&mut corners);
         let [Some(first), Some(last)] = [corners.first(), corners.last()] else { continue };
@@ -221,7 +221,8 @@ fn needs_border(context: &Context, loops: &[Vec<Corner>]) -> bool {
     }
     let round = matches!(surface, Surface::Sphere { .. } | Surface::Torus { .. });
     let left = if context.brep.faces[context.face].same_sense { 1.0 } else { -1.0 };
-    round && loops.iter().all(|corners| twice_area(corners) * left < 0.0)
+    let seams = context.brep.bounds_are_seams(context.face);
+    round && !seams && loops.iter().all(|corners| twice_area(corners) * left < 0.0)
 }
 
 /// The border of a surface with finite parameters as a polygon: closed sides share their vertices, and a side
