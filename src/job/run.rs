@@ -1,4 +1,4 @@
-//! Runs a job over its parts: each is read, changed, written beside its place, read again, judged by
+//! Runs a job on one part: it is read, changed, written beside its place, read again, judged by
 //! others, and only then moved into place.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -6,21 +6,25 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::Instant;
 
-use super::failure::{PartError, code};
+use serde::{Deserialize, Serialize};
+
+use super::failure::PartError;
 use super::file::{Job, Operation};
+use super::flagged::flagged;
 use super::judge;
 use super::measure::Figures;
 use super::operate::operate;
 use super::output::Staged;
-use super::own_check::{OwnFinding, findings_of_faces, new_findings, touched};
+use super::own_check::{OwnFinding, changed_faces, findings_of_faces, new_findings, with_neighbours};
 use super::part::Read;
 use super::plan::Part;
-use super::report::{DiagnosticReport, Edits, PartReport, Report, Status, WritePath};
-use crate::document::Stamp;
-use crate::model::{ChangeSet, Model, Origin};
+use super::report::{DiagnosticReport, Edits, PartReport, Status, WritePath};
+use super::restate::{self, Outcome, restated};
+use crate::document::{Document, Stamp};
+use crate::model::{AnnotationKind, Balance, ChangeSet, Model, Origin};
 
 /// Whether a run writes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Mode {
     /// Writes outputs.
     Write,
@@ -28,63 +32,77 @@ pub enum Mode {
     DryRun,
 }
 
-/// Runs a job. Parts are done in order; one that fails does not stop the others. `watch` sees each
-/// part's report when it is finished.
-pub fn run(job: &Job, parts: &[Part], mode: Mode, watch: &mut dyn FnMut(&PartReport)) -> Report {
-    let stamp = Stamp {
-        time: super::clock::time_stamp(),
-        preprocessor: format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION")),
-    };
-    let mut reports = Vec::with_capacity(parts.len());
-    for part in parts {
-        let report = run_part(job, part, mode, &stamp);
-        watch(&report);
-        reports.push(report);
-    }
-    Report {
-        version: 1,
-        program: stamp.preprocessor,
-        job: job.name.clone(),
-        code: overall(&reports),
-        parts: reports,
+/// What is being done to a part.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stage {
+    /// The input is read.
+    Read,
+    /// An operation is carried out.
+    Operation {
+        /// Its number in the job, from 1.
+        number: usize,
+        /// Operations of the job.
+        of: usize,
+        /// The word of the job file.
+        kind: String,
+    },
+    /// The result is read again and compared.
+    Check,
+    /// The result is written beside its place, and other programs are asked about it.
+    Judge,
+}
+
+impl std::fmt::Display for Stage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Read => f.write_str("reading"),
+            Self::Operation { number, of, kind } => write!(f, "operation {number} of {of}, {kind}"),
+            Self::Check => f.write_str("checking"),
+            Self::Judge => f.write_str("writing and validating"),
+        }
     }
 }
 
-/// One part's own code is the run's; of several, a failed one makes the run's 1.
-fn overall(reports: &[PartReport]) -> u8 {
-    match reports {
-        [only] => only.code,
-        _ if reports.iter().all(|report| report.code == code::DONE) => code::DONE,
-        _ => code::GATE,
-    }
+/// Name and version of the program, as reports and changed headers have them.
+#[must_use]
+pub fn program() -> String {
+    format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"))
 }
 
-fn run_part(job: &Job, part: &Part, mode: Mode, stamp: &Stamp) -> PartReport {
+/// Runs a job on one part. `watch` is told what is being done.
+pub fn run_part(job: &Job, part: &Part, mode: Mode, watch: &mut dyn FnMut(Stage)) -> PartReport {
+    let stamp = Stamp { time: super::clock::time_stamp(), preprocessor: program() };
     let start = Instant::now();
     let name = |path: &Path| path.to_string_lossy().into_owned();
     let mut report = PartReport::new(name(&part.input), name(&part.output));
-    let done = catch_unwind(AssertUnwindSafe(|| go(job, part, mode, stamp, &mut report)));
+    let done = catch_unwind(AssertUnwindSafe(|| go(job, part, mode, &stamp, watch, &mut report)));
     match done.unwrap_or(Err(PartError::Internal)) {
         Ok(()) => report.status = Status::Done,
-        Err(error) => {
-            report.code = error.exit_code();
-            report.failure = Some(error.failure());
-            report.side_files.clear();
-        }
+        Err(error) => report.fail(&error),
     }
     report.seconds = start.elapsed().as_secs_f64();
     report.peak_bytes = peak_bytes();
     report
 }
 
-fn go(job: &Job, part: &Part, mode: Mode, stamp: &Stamp, report: &mut PartReport) -> Result<(), PartError> {
+fn go(
+    job: &Job,
+    part: &Part,
+    mode: Mode,
+    stamp: &Stamp,
+    watch: &mut dyn FnMut(Stage),
+    report: &mut PartReport,
+) -> Result<(), PartError> {
+    watch(Stage::Read);
     let mut read = Read::file(&part.input)?;
-    let result = changed_bytes(job, part, &mut read, stamp, report);
+    let result = changed_bytes(job, part, &mut read, stamp, watch, report);
     report.take_diagnostics(&read.diagnostics, read.document.source());
     let result = result?;
     let changed = &result.bytes;
     // The input's bytes serve again when nothing changed: a copy would double the memory.
     let bytes = changed.as_deref().unwrap_or_else(|| read.document.source().bytes());
+    watch(Stage::Check);
     let needs_model = !job.operation.is_empty() || !job.also.is_empty() || !job.validate.with.is_empty();
     let after = if needs_model { Some(read_again(job, part, bytes, &result, report)?) } else { None };
     if let Some(model) = &after {
@@ -93,15 +111,19 @@ fn go(job: &Job, part: &Part, mode: Mode, stamp: &Stamp, report: &mut PartReport
     if mode == Mode::DryRun {
         return Ok(());
     }
+    watch(Stage::Judge);
     let staged = Staged::write(&part.output, bytes).map_err(PartError::Output)?;
     let mut sides = Vec::new();
     if let Some(model) = &after {
         sides = side_files(job, part, model, report)?;
         let judged = judge::judge(&job.validate, staged.path(), model, None)?;
         report.validators = judged.verdicts;
-        report.losses.extend(judged.unasked.into_iter().map(|text| warning("validate.not-asked", text)));
         report.losses.extend(
-            judge::other_counts(&report.validators, model).map(|text| warning("validate.face-count", text)),
+            judged.unasked.into_iter().map(|text| DiagnosticReport::warning("validate.not-asked", text)),
+        );
+        report.losses.extend(
+            judge::other_counts(&report.validators, model)
+                .map(|text| DiagnosticReport::warning("validate.face-count", text)),
         );
         judge::refuse(&report.validators)?;
     }
@@ -118,12 +140,14 @@ struct Changed {
     bytes: Option<Vec<u8>>,
     /// Faces that the operations change, with their neighbours.
     touched: BTreeSet<Origin>,
+    /// All faces of the input.
+    known: BTreeSet<Origin>,
     /// Facts that the input already violated on these.
     findings: Vec<OwnFinding>,
     /// Count of surfaces by kind that the result must have.
     surfaces: BTreeMap<String, usize>,
-    /// Edges of new bounds, each with a vertex of its own.
-    edges: usize,
+    /// By how much the counts of the result must differ.
+    balance: Balance,
 }
 
 fn changed_bytes(
@@ -131,6 +155,7 @@ fn changed_bytes(
     part: &Part,
     read: &mut Read,
     stamp: &Stamp,
+    watch: &mut dyn FnMut(Stage),
     report: &mut PartReport,
 ) -> Result<Changed, PartError> {
     report.write_path = Some(WritePath::Verbatim);
@@ -146,10 +171,13 @@ fn changed_bytes(
     chord(job, &model)?;
     report.before = Some(Figures::of(&model));
     let mut surfaces = Figures::of(&model).surfaces;
-    let mut edges = 0;
+    let mut balance = Balance::default();
     let mut bytes: Option<Vec<u8>> = None;
     let mut faces: BTreeSet<Origin> = BTreeSet::new();
-    for operation in &job.operation {
+    let mut concerned = restate::Changed::default();
+    for (at, operation) in job.operation.iter().enumerate() {
+        let kind = operation.kind().to_owned();
+        watch(Stage::Operation { number: at + 1, of: job.operation.len(), kind });
         // Each operation reads what the ones before it would have written.
         let between = bytes.as_ref().map(|bytes| read_between(bytes, part)).transpose()?;
         let (document, model) = match &between {
@@ -163,19 +191,20 @@ fn changed_bytes(
         report.edits = Some(report.edits.map_or(edits, |before| before.followed_by(&edits)));
         if !patch.is_empty() {
             count_kinds(&mut surfaces, model, &changes);
-            faces.extend(touched(model, &changes));
-            edges += changes.bounds.values().flatten().map(|bound| bound.edges.len()).sum::<usize>();
+            let changed = changed_faces(model, &changes);
+            concerned.add(model, &changed);
+            faces.extend(with_neighbours(model, changed));
+            balance.add(Balance::of(model, &changes));
             bytes = Some(patch.apply(document.source().bytes()));
         }
     }
-    if bytes.is_none() {
-        return Ok(Changed::default());
-    }
+    let Some(bytes) = bytes else { return Ok(Changed::default()) };
     report.write_path = Some(WritePath::Patched);
-    let stale = read.document.validation_properties();
-    report.losses.extend(stale.iter().map(|entity| stale_property(entity)));
+    let bytes = Some(state_anew(bytes, part, &model, &concerned, stamp, report)?);
+    report.losses.extend(flagged(&read.document, &model, &concerned));
     let findings = findings_of_faces(&read.document, &model, &faces, 1.0);
-    Ok(Changed { bytes, touched: faces, findings, surfaces, edges })
+    let known = model.origins.faces.iter().map(|(_, origin)| *origin).collect();
+    Ok(Changed { bytes, touched: faces, known, findings, surfaces, balance })
 }
 
 /// What an operation has made, as the next one finds it.
@@ -187,21 +216,61 @@ fn read_between(bytes: &[u8], part: &Part) -> Result<(Read, Model), PartError> {
     Ok((read, model))
 }
 
+/// States anew what the file says of the changed shape.
+fn state_anew(
+    bytes: Vec<u8>,
+    part: &Part,
+    before: &Model,
+    concerned: &restate::Changed,
+    stamp: &Stamp,
+    report: &mut PartReport,
+) -> Result<Vec<u8>, PartError> {
+    if !before.annotations.iter().any(|a| a.kind == AnnotationKind::ValidationProperty) {
+        return Ok(bytes);
+    }
+    let (read, after) = read_between(&bytes, part)?;
+    let (changes, told) = restated(before, &after, concerned);
+    report.restated = told;
+    let patch = read.document.lower(&after, &changes, stamp)?;
+    if patch.is_empty() {
+        return Ok(bytes);
+    }
+    let edits: Edits = patch.counts().into();
+    report.edits = Some(report.edits.map_or(edits, |before| before.followed_by(&edits)));
+    Ok(patch.apply(&bytes))
+}
+
+/// Tells what became of statements about the shape: what was to go may still stand there.
+fn tell_restated(document: &Document, report: &mut PartReport) {
+    for told in &mut report.restated {
+        let line = told.origin.and_then(|origin| document.line_of(origin));
+        if told.outcome == Outcome::Removed && line.is_some() {
+            told.was_kept();
+        }
+        let what = match told.outcome {
+            Outcome::Recomputed if told.reason.is_none() => continue,
+            Outcome::Recomputed => ("validation-property.stale", "is stated anew but for a part"),
+            Outcome::Removed => ("validation-property.removed", "is stated no more"),
+            Outcome::Kept => ("validation-property.stale", "is stated as it was before the change"),
+        };
+        let reason = told.reason.as_deref().unwrap_or_default();
+        report.losses.push(DiagnosticReport {
+            entity: Some(told.entity.clone()),
+            line,
+            ..DiagnosticReport::warning(what.0, format!("'{}' {}: {reason}", told.name, what.1))
+        });
+    }
+}
+
 /// Counts of surfaces by kind, as a change set will leave them.
 fn count_kinds(surfaces: &mut BTreeMap<String, usize>, model: &Model, changes: &ChangeSet) {
-    for (&face, new) in &changes.surfaces {
-        let (old, new) = (super::measure::kind(model.brep.surface_of(face)), new.kind());
-        if old == new {
-            continue;
-        }
-        *surfaces.entry(new.to_owned()).or_insert(0) += 1;
-        if let Some(count) = surfaces.get_mut(&old) {
-            *count -= 1;
-            if *count == 0 {
-                surfaces.remove(&old);
-            }
-        }
+    let new = changes.surfaces.values().chain(changes.new_faces.iter().map(|face| &face.surface));
+    new.for_each(|new| *surfaces.entry(new.kind().to_owned()).or_insert(0) += 1);
+    for &face in changes.surfaces.keys().chain(&changes.removed_faces) {
+        let old = super::measure::kind(model.brep.surface_of(face));
+        surfaces.entry(old).and_modify(|count| *count = count.saturating_sub(1));
     }
+    surfaces.retain(|_, count| *count > 0);
 }
 
 /// Reads the result as anybody else would, and compares it with the input.
@@ -218,12 +287,10 @@ fn read_again(
     let after = Figures::of(&model);
     let mut findings = Vec::new();
     if let Some(before) = &report.before {
-        for (name, was, is) in before.differing_counts(&after) {
-            let more = if matches!(name.as_str(), "edges" | "vertices") { wanted.edges } else { 0 };
-            if is == was + more {
-                continue;
+        for (name, was, is) in before.counts_beside(&after) {
+            if was.checked_add_signed(wanted.balance.count(name)) != Some(is) {
+                findings.push(format!("{name}: {was} before, {is} after"));
             }
-            findings.push(format!("{name}: {was} before, {is} after"));
         }
         let surfaces = if wanted.bytes.is_some() { &wanted.surfaces } else { &before.surfaces };
         if *surfaces != after.surfaces {
@@ -237,9 +304,13 @@ fn read_again(
         }
     }
     if report.write_path == Some(WritePath::Patched) {
+        tell_restated(&read.document, report);
         // Of the operations, not of the part's box: a part of an assembly may grow while the box stays.
         let growth = job.operation.iter().map(Operation::growth).product();
-        let own = findings_of_faces(&read.document, &model, &wanted.touched, growth);
+        let new = model.origins.faces.iter().map(|(_, origin)| *origin);
+        let mut faces = wanted.touched.clone();
+        faces.extend(new.filter(|origin| !wanted.known.contains(origin)));
+        let own = findings_of_faces(&read.document, &model, &faces, growth);
         let new = new_findings(&wanted.findings, &own, growth).filter(|finding| finding.fails_a_change);
         findings.extend(new.map(ToString::to_string));
         report.findings = own;
@@ -273,24 +344,6 @@ fn side_files(
 fn chord(job: &Job, model: &Model) -> Result<Option<f64>, PartError> {
     let wanted = job.tolerance.length.filter(|_| !job.also.is_empty());
     wanted.map(|length| judge::chord(model, length.0, "tolerance.length")).transpose()
-}
-
-fn stale_property(entity: &str) -> DiagnosticReport {
-    let message = "states a validation property of the part before the change; it is kept as it was";
-    DiagnosticReport {
-        entity: Some(entity.to_owned()),
-        ..warning("validation-property.stale", message.to_owned())
-    }
-}
-
-fn warning(code: &str, message: String) -> DiagnosticReport {
-    DiagnosticReport {
-        code: code.to_owned(),
-        severity: "warning".to_owned(),
-        entity: None,
-        line: None,
-        message,
-    }
 }
 
 /// Greatest resident memory of the process, where Linux tells.

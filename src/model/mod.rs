@@ -6,16 +6,20 @@
 
 pub mod annotation;
 pub mod assembly;
+pub mod balance;
 pub mod change_set;
 pub mod inventory;
+pub mod mass;
 pub mod origin;
 
 pub use annotation::{Annotation, AnnotationKind, Element, Measure};
 pub use assembly::{
     Instances, Node, Occurrence, Override, OverrideTarget, PlacedBody, PlacedShape, Product, instance_counts,
 };
+pub use balance::Balance;
 pub use change_set::ChangeSet;
 pub use inventory::Inventory;
+pub use mass::{Mass, Subject};
 pub use origin::{Origin, Origins};
 
 use crate::brep::{Arena, BodyId, Brep, CurveId, FaceId};

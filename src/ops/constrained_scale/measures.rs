@@ -6,7 +6,7 @@
 use super::motion::Motion;
 use super::sampling::{closest, steps};
 use super::task::ScaledFace;
-use crate::geometry::nurbs::NurbsSurface;
+use crate::geometry::nurbs::{Accuracy, Deviation, NurbsSurface, deviation};
 use crate::math::{Point3, Vector3, rigid_fit};
 
 /// Comparison of a face with the plainly scaled surface outside the held cells, sampled on a grid.
@@ -59,6 +59,30 @@ pub fn quality(face: &ScaledFace, samples: usize) -> Quality {
     sums.quality()
 }
 
+/// Proved bounds of how far a face is from the plainly scaled surface; see [`deviation`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Certified {
+    /// Over the cells in which some control point that acts is not held; none when there are no such cells.
+    pub outside: Option<Deviation>,
+    /// Over the cells in which all are held: there the face keeps its shape, and the plain scaling does not.
+    pub held: Option<Deviation>,
+}
+
+/// Bounds the deviation of a face.
+#[must_use]
+pub fn certified(face: &ScaledFace) -> Certified {
+    let (knots_u, knots_v) = (face.surface.knots_u(), face.surface.knots_v());
+    let (p, q) = (knots_u.degree(), knots_v.degree());
+    let (spans_u, spans_v): (Vec<usize>, Vec<usize>) = (knots_u.spans().collect(), knots_v.spans().collect());
+    let held = |[i, j]: [usize; 2]| {
+        let (k, l) = (spans_u[i], spans_v[j]);
+        (k - p..=k).all(|row| (l - q..=l).all(|column| face.held.contains(row, column)))
+    };
+    let bound =
+        |part: &dyn Fn([usize; 2]) -> bool| deviation(&face.surface, &face.image, &Accuracy::default(), part);
+    Certified { outside: bound(&|cell| !held(cell)), held: bound(&held) }
+}
+
 /// How far a held loop is from where its group's motion takes it, and from being a rigid copy of itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotionDeviation {
@@ -82,32 +106,40 @@ pub fn motion_deviation(
     points: &[[f64; 2]],
     motion: &Motion,
 ) -> MotionDeviation {
-    let (mut worst, mut magnitude) = (0.0_f64, 0.0_f64);
-    let mut low = Vector3::repeat(f64::INFINITY);
-    let mut high = -low;
     let mut pairs = Vec::with_capacity(points.len() * FINER);
     for (a, b) in points.iter().zip(points.iter().cycle().skip(1)) {
         for k in 0..FINER {
             let t = k as f64 / FINER as f64;
             let (u, v) = (a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]));
-            let start = before.point(u, v);
-            let expected = motion.apply(&start);
-            let found = after.point(u, v);
+            pairs.push((before.point(u, v), after.point(u, v)));
+        }
+    }
+    MotionDeviation::of_pairs(&pairs, motion)
+}
+
+impl MotionDeviation {
+    /// Of points with what became of them.
+    #[must_use]
+    pub fn of_pairs(pairs: &[(Point3<f64>, Point3<f64>)], motion: &Motion) -> Self {
+        let (mut worst, mut magnitude) = (0.0_f64, 0.0_f64);
+        let mut low = Vector3::repeat(f64::INFINITY);
+        let mut high = -low;
+        for (start, found) in pairs {
+            let expected = motion.apply(start);
             worst = worst.max((found - expected).amax());
-            pairs.push((start, found));
             magnitude = magnitude.max(start.coords.amax()).max(expected.coords.amax());
             low = low.inf(&start.coords);
             high = high.sup(&start.coords);
         }
-    }
-    let extent = (high - low).max();
-    // Where the motion is rigid, it is the copy that was meant: a fit could only flatter it.
-    let best = if motion.is_rigid() { None } else { rigid_fit(&pairs) };
-    let off = best.map(|best| pairs.iter().map(|(p, q)| (best.point(p) - q).amax()).fold(0.0, f64::max));
-    MotionDeviation {
-        rigid: off.unwrap_or(worst) / extent,
-        relative: worst / extent,
-        rounding: ROUNDINGS * f64::EPSILON * magnitude / extent,
+        let extent = (high - low).max();
+        // Where the motion is rigid, it is the copy that was meant: a fit could only flatter it.
+        let best = if motion.is_rigid() { None } else { rigid_fit(pairs) };
+        let off = best.map(|best| pairs.iter().map(|(p, q)| (best.point(p) - q).amax()).fold(0.0, f64::max));
+        Self {
+            rigid: off.unwrap_or(worst) / extent,
+            relative: worst / extent,
+            rounding: ROUNDINGS * f64::EPSILON * magnitude / extent,
+        }
     }
 }
 

@@ -13,17 +13,33 @@ use super::super::view::EntityView;
 use super::super::write::RecordWriter;
 use super::compose::{Body, Inherited};
 use super::{LowerError, Lowering};
+use crate::geometry::Surface;
 use crate::geometry::nurbs::KnotVector;
 use crate::source::Span;
 
 impl<'a> Lowering<'a> {
-    fn view(&self, name: InstanceName) -> Option<EntityView<'a>> {
+    pub(super) fn view(&self, name: InstanceName) -> Option<EntityView<'a>> {
         EntityView::of(self.structure.instance(name)?)
     }
 
-    fn attribute(&self, name: InstanceName, attribute: &'static str) -> Result<Parameter<'a>, LowerError> {
+    pub(super) fn attribute(
+        &self,
+        name: InstanceName,
+        attribute: &'static str,
+    ) -> Result<Parameter<'a>, LowerError> {
         let found = self.view(name).and_then(|view| view.get(attribute));
         found.ok_or(LowerError::Attribute { name, attribute })
+    }
+
+    /// A list, with the position of its record.
+    pub(super) fn list(
+        &self,
+        name: InstanceName,
+        attribute: &'static str,
+    ) -> Result<(u32, Parameter<'a>), LowerError> {
+        let list = self.attribute(name, attribute)?;
+        let position = self.structure.position(name).ok_or(LowerError::Unresolved { name })?;
+        list.as_list().map(|_| (position, list)).ok_or(LowerError::Attribute { name, attribute })
     }
 
     /// Where the value of an attribute stands.
@@ -204,13 +220,15 @@ impl<'a> Lowering<'a> {
     /// exports, or that nobody used before, stays.
     pub(super) fn remove_orphans(&mut self) {
         let exported = anchored(self.structure);
-        let mut candidates: BTreeSet<InstanceName> = self.lost.keys().copied().collect();
+        let mut candidates: BTreeSet<InstanceName> = self.lost.keys().chain(&self.retired).copied().collect();
         let mut removed = BTreeSet::new();
         while let Some(name) = candidates.pop_first() {
             let Some(instance) = self.structure.instance(name) else { continue };
             let users: Vec<u32> = self.users.users(self.structure, name).to_vec();
             let n_users: usize = users.into_iter().map(|user| self.n_references(user, name)).sum();
-            let orphan = self.n_lost(name) >= n_users && !exported.contains(&instance.position());
+            let orphan =
+                self.n_lost(name) >= n_users && self.gained.get(&name).is_none_or(|&count| count == 0);
+            let orphan = self.retired.contains(&name) || orphan && !exported.contains(&instance.position());
             if !orphan || !removed.insert(instance.position()) {
                 continue;
             }
@@ -219,6 +237,7 @@ impl<'a> Lowering<'a> {
                 candidates.insert(target);
             }
         }
+        self.edits.extend(std::mem::take(&mut self.lists).finish(&removed, self.ending));
         self.edits.extend(edit::remove(self.structure, removed));
     }
 
@@ -228,9 +247,18 @@ impl<'a> Lowering<'a> {
         self.inherited(name, [closed.clone(), closed])
     }
 
-    /// Raw text that a new surface takes over from the record that it replaces.
-    pub(super) fn inherited_by_surface(&self, name: InstanceName) -> Inherited {
-        self.inherited(name, [self.raw(name, "u_closed", ".U."), self.raw(name, "v_closed", ".U.")])
+    /// Raw text that a new surface takes over from the record that it replaces. Whether a spline is closed is its own to
+    /// say where that record did not.
+    pub(super) fn inherited_by_surface(&self, name: InstanceName, new: &Surface) -> Inherited {
+        let closed = match new {
+            Surface::Nurbs(spline) => {
+                let tolerance = SAME_BORDER * spline.bounding_box().diagonal();
+                [spline.is_closed_u(tolerance), spline.is_closed_v(tolerance)]
+            }
+            _ => [false, false],
+        };
+        let text = closed.map(|closed| if closed { ".T." } else { ".F." });
+        self.inherited(name, [self.raw(name, "u_closed", text[0]), self.raw(name, "v_closed", text[1])])
     }
 
     fn inherited(&self, name: InstanceName, closed: [String; 2]) -> Inherited {
@@ -241,7 +269,7 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    fn raw(&self, name: InstanceName, attribute: &'static str, missing: &str) -> String {
+    pub(super) fn raw(&self, name: InstanceName, attribute: &'static str, missing: &str) -> String {
         let span = self.attribute_span(name, attribute).ok();
         let text = span.and_then(|span| std::str::from_utf8(self.structure.source().slice(span)).ok());
         text.unwrap_or(missing).to_owned()
@@ -256,6 +284,9 @@ fn repeated_references(structure: &ExchangeStructure, user: u32) -> BTreeMap<Ins
     let runs = all.chunk_by(|a, b| a == b).filter(|run| run.len() > 1);
     runs.map(|run| (run[0], run.len())).collect()
 }
+
+/// Distance of opposite borders, as a part of a surface's size, at which it says of itself that it is closed.
+const SAME_BORDER: f64 = 1e-9;
 
 /// Splines without knots in the file whose implied knots are clamped.
 const CLAMPED: [Entity; 4] =
