@@ -11,6 +11,7 @@
 pub mod brep;
 pub mod cli;
 pub mod diagnostic;
+pub mod digest;
 pub mod document;
 pub mod exchange;
 pub mod geometry;

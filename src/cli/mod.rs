@@ -12,6 +12,7 @@ mod inspect;
 mod print;
 mod run;
 mod show;
+mod verify;
 mod view;
 
 use clap::Parser;
@@ -37,6 +38,7 @@ pub fn main() -> u8 {
         Command::Convert(arguments) => convert::convert(&arguments, &mut printer),
         Command::Inspect(arguments) => inspect::inspect(&arguments, &mut printer),
         Command::Check(arguments) => check::check(&arguments, &mut printer),
+        Command::Verify(arguments) => verify::verify(&arguments, &mut printer),
         Command::View(arguments) => view::view(&arguments, &mut printer),
         Command::Feature(FeatureCommand::Export(arguments)) => feature::export(&arguments, &mut printer),
         Command::Feature(FeatureCommand::Detail(arguments)) => feature::detail(&arguments, &mut printer),
@@ -46,6 +48,7 @@ pub fn main() -> u8 {
                 SchemaOf::Report => crate::job::schema::report(),
                 SchemaOf::Feature => crate::job::schema::feature(),
                 SchemaOf::Detail => crate::job::schema::detail(),
+                SchemaOf::Proof => crate::job::schema::proof(),
             });
             exit_code::DONE
         }

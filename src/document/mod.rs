@@ -5,6 +5,7 @@
 //! file is.
 
 mod compressed;
+pub mod proof;
 
 use crate::diagnostic::Sink;
 use crate::exchange::Patch;
@@ -12,6 +13,7 @@ use crate::model::{ChangeSet, Model, Origin};
 use crate::source::{Source, SourceTooLarge};
 use crate::step::{self, ExchangeStructure};
 pub use compressed::CompressedError;
+pub use proof::{CopyResiduals, ProofError};
 
 /// What the bytes of a file are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

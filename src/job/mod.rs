@@ -25,6 +25,7 @@ pub mod part;
 pub mod paste_file;
 mod paste_operate;
 pub mod plan;
+pub mod proof;
 pub mod read;
 pub mod report;
 pub mod restate;
