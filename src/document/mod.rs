@@ -1,9 +1,10 @@
-//! Recognises the format of a file; the one place that dispatches between formats.
+//! Recognises the format of a file, part or cloud; the one place that dispatches between formats.
 //!
 //! Holds no policy: what to do with a file that cannot be read is the caller's decision. STEP is read, plain,
 //! in a gzip stream or in a zip archive; everything else is recognised, so that a message can say what the
 //! file is.
 
+pub mod cloud;
 mod compressed;
 pub mod proof;
 
