@@ -6,6 +6,7 @@
 
 mod attach_and_deform;
 #[path = "../../tests/support/nets.rs"]
+#[allow(clippy::unwrap_used, reason = "shared with the tests")]
 mod nets;
 #[path = "../../tests/constrained_scale/parts.rs"]
 #[allow(dead_code, unused_imports, reason = "shared with the tests")]
