@@ -30,6 +30,8 @@ pub mod read;
 pub mod report;
 pub mod restate;
 pub mod run;
+pub mod scale_file;
+mod scale_operate;
 pub mod schema;
 pub mod select;
 mod select_curve;

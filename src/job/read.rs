@@ -124,7 +124,8 @@ fn toml_value(value: &toml::Spanned<toml::de::DeValue<'_>>) -> Result<Node, JobF
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::job::file::{Hold, LengthSetting, Operation};
+    use crate::job::file::{LengthSetting, Operation};
+    use crate::job::scale_file::Hold;
     use crate::units::Length;
 
     const HEAD: &str = "version = 1\ninputs = [\"a.step\"]\noutput = \"b.step\"\n";
