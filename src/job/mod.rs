@@ -13,6 +13,7 @@ pub mod feature_file;
 pub mod file;
 pub mod finding;
 pub mod flagged;
+mod held;
 mod json;
 pub mod judge;
 pub mod measure;
@@ -36,6 +37,7 @@ pub mod schema;
 pub mod select;
 mod select_curve;
 pub mod selector;
+mod side;
 pub mod simplify_file;
 pub mod validation_property;
 

@@ -9,6 +9,7 @@ mod paste;
 mod paste_corpus;
 mod paste_targets;
 mod patho;
+mod proof;
 mod solids;
 mod stated;
 #[path = "../support/mod.rs"]
