@@ -4,8 +4,8 @@
 //! something happened which did not. The JSON Schema under `schemas/` is generated from these types.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
 use serde::de;
+use serde::{Deserialize, Serialize};
 
 pub use super::detail_file::DetailTransfer;
 pub use super::paste_file::FeaturePaste;
@@ -220,7 +220,9 @@ impl TryFrom<f64> for Seconds {
 }
 
 /// A program that can be asked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize, JsonSchema, clap::ValueEnum)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema, clap::ValueEnum,
+)]
 #[serde(rename_all = "lowercase")]
 #[value(rename_all = "lowercase")]
 pub enum ValidatorName {
@@ -245,6 +247,17 @@ pub enum Operation {
 }
 
 impl Operation {
+    /// The word of the job file.
+    #[must_use]
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::ConstrainedScale(_) => "constrained_scale",
+            Self::DetailTransfer(_) => "detail_transfer",
+            Self::FeaturePaste(_) => "feature_paste",
+            Self::Simplify(_) => "simplify",
+        }
+    }
+
     /// By how much the operation stretches a distance at most; at least 1, since what it leaves alone stays.
     #[must_use]
     pub fn growth(&self) -> f64 {

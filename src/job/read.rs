@@ -6,7 +6,7 @@ use super::file::Job;
 use super::node::{Entry, Node, NodeError, Value, decode};
 
 /// The two spellings of a job file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Syntax {
     /// TOML 1.0.
     Toml,

@@ -1,7 +1,10 @@
 //! The real program in a fresh folder: what it prints, what it leaves, and how it ends.
 
 mod accepted;
+mod batch;
+mod cluster;
 mod detail;
+mod diff;
 mod jobs;
 mod locality;
 mod parts;
@@ -10,6 +13,7 @@ mod paste_corpus;
 mod paste_targets;
 mod patho;
 mod proof;
+mod regress;
 mod solids;
 mod stated;
 #[path = "../support/mod.rs"]

@@ -208,8 +208,7 @@ fn what_a_later_operation_changes_is_no_claim() {
 
 #[test]
 fn a_corpus_part_is_proved() {
-    let part =
-        support::corpus().map(|folder: PathBuf| folder.join("step/ANC101-ill.stp"));
+    let part = support::corpus().map(|folder: PathBuf| folder.join("step/ANC101-ill.stp"));
     let Some(part) = part.filter(|path| path.exists()) else { return };
     let fixture = proved(std::fs::read(part).expect("a corpus file"), DOOR);
     assert_verdict(&fixture, true, "a corpus part");

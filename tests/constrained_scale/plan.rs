@@ -241,14 +241,16 @@ fn a_hole_that_ends_on_a_plane_is_where_the_plane_is() {
     };
     // The lower plane goes down to -3.75, and the wall keeps its length of 3.
     assert_eq!(circles(&model), [0.0, -3.0]);
-    assert_eq!(circles(&new), [-0.75, -3.75]);
+    let near = |found: &[f64], expected: [f64; 2], room: f64| {
+        assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() <= room), "{found:?} {expected:?}");
+    };
+    near(&circles(&new), [-0.75, -3.75], 1e-14);
     assert!(gap(&new) <= gap(&model) + 1e-9);
     assert_eq!(plan.measures.faces.len(), 1, "only the upper skin is stretched");
     // A wall that slides has both ends where the skins are.
     let plan = planned(&model, &Params { wall: Wall::Slide, ..params(GROW) });
     let new = applied(&model, &plan.change_set);
-    let heights = circles(&new);
-    assert!(heights[0].abs() < 1e-9 && heights[1] == -3.75, "{heights:?}");
+    near(&circles(&new), [0.0, -3.75], 1e-9);
 }
 
 /// A face that hangs on a held loop, or one that was named, is held to the bit where nothing has to move it.
