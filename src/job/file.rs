@@ -29,9 +29,10 @@ pub struct Job {
     pub inputs: Vec<String>,
     /// Where each result goes, relative to the job file; `{dir}`, `{stem}` and `{ext}` are those of the input.
     pub output: String,
-    /// Side files beside the output: meshes for viewing and for OpenSCAD.
+    /// Side files beside the output: meshes for viewing and for OpenSCAD, a picture of before and after, and a sheet that
+    /// proves what was held.
     #[serde(default)]
-    pub also: Vec<SideFormat>,
+    pub also: Vec<SideFile>,
     /// Bounds on whatever must be approximated.
     #[serde(default)]
     pub tolerance: ToleranceSettings,
@@ -65,10 +66,10 @@ impl TryFrom<u64> for Version {
     }
 }
 
-/// A mesh format that a side file may have.
+/// A file beside the output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
-pub enum SideFormat {
+pub enum SideFile {
     /// Binary STL.
     Stl,
     /// OFF with shared vertices.
@@ -78,10 +79,14 @@ pub enum SideFormat {
     ThreeMf,
     /// Binary glTF with names and colours.
     Glb,
+    /// A picture: highlight lines of the part before and after.
+    Png,
+    /// A sheet of what was held, which `resurf verify` checks.
+    Proof,
 }
 
-impl SideFormat {
-    /// The extension of its files.
+impl SideFile {
+    /// What stands behind the stem of its name.
     #[must_use]
     pub fn extension(self) -> &'static str {
         match self {
@@ -89,8 +94,35 @@ impl SideFormat {
             Self::Off => "off",
             Self::ThreeMf => "3mf",
             Self::Glb => "glb",
+            Self::Png => "png",
+            Self::Proof => "proof.json",
         }
     }
+
+    /// The format of a mesh; `None` for what is none.
+    #[must_use]
+    pub fn mesh(self) -> Option<SideFormat> {
+        match self {
+            Self::Stl => Some(SideFormat::Stl),
+            Self::Off => Some(SideFormat::Off),
+            Self::ThreeMf => Some(SideFormat::ThreeMf),
+            Self::Glb => Some(SideFormat::Glb),
+            Self::Png | Self::Proof => None,
+        }
+    }
+}
+
+/// A format of meshes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SideFormat {
+    /// Binary STL.
+    Stl,
+    /// OFF with shared vertices.
+    Off,
+    /// 3MF with names and colours.
+    ThreeMf,
+    /// Binary glTF with names and colours.
+    Glb,
 }
 
 /// Bounds on approximation.

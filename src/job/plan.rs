@@ -7,7 +7,7 @@ use globset::{GlobBuilder, GlobMatcher};
 use serde::{Deserialize, Serialize};
 
 use super::Job;
-use super::file::Operation;
+use super::file::{Operation, SideFile};
 use crate::document::Format;
 
 /// One part of a run.
@@ -68,6 +68,9 @@ pub enum PlanError {
         /// The file.
         output: PathBuf,
     },
+    /// A proof sheet is asked for, and no operation holds anything.
+    #[error("`also` asks for a proof, and no operation of the job has a `hold` to prove")]
+    NothingToProve,
     /// A part would be written over an input.
     #[error("{} would be written over itself or another input", .output.display())]
     OverInput {
@@ -128,6 +131,13 @@ pub fn referenced(job: &Job) -> Vec<PathBuf> {
 /// # Errors
 /// [`PlanError`]. Nothing but names is looked at.
 pub fn parts(job: &Job, folder: &Path) -> Result<Vec<Part>, PlanError> {
+    let holds = |operation: &Operation| match operation {
+        Operation::ConstrainedScale(scale) => !scale.hold.is_empty(),
+        Operation::DetailTransfer(_) | Operation::FeaturePaste(_) | Operation::Simplify(_) => false,
+    };
+    if job.also.contains(&SideFile::Proof) && !job.operation.iter().any(holds) {
+        return Err(PlanError::NothingToProve);
+    }
     let mut inputs = Vec::new();
     for pattern in &job.inputs {
         inputs.extend(matches(pattern, folder)?);

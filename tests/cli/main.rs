@@ -12,6 +12,7 @@ mod paste;
 mod paste_corpus;
 mod paste_targets;
 mod patho;
+mod proof;
 mod regress;
 mod solids;
 mod stated;
