@@ -32,6 +32,9 @@ pub struct Job {
     /// Side files beside the output: meshes for viewing and for OpenSCAD.
     #[serde(default)]
     pub also: Vec<SideFormat>,
+    /// Pictures beside the output, as PNG, of the faces that the operations changed.
+    #[serde(default)]
+    pub pictures: Vec<PictureKind>,
     /// Bounds on whatever must be approximated.
     #[serde(default)]
     pub tolerance: ToleranceSettings,
@@ -89,6 +92,32 @@ impl SideFormat {
             Self::Off => "off",
             Self::ThreeMf => "3mf",
             Self::Glb => "glb",
+        }
+    }
+}
+
+/// What a picture shows.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize, serde::Serialize, JsonSchema,
+)]
+#[serde(rename_all = "lowercase")]
+pub enum PictureKind {
+    /// Highlight lines before and after.
+    Highlight,
+    /// Mean curvature before and after: red where the face bulges outwards.
+    Curvature,
+    /// Deviation of the new faces from the old: red outwards.
+    Deviation,
+}
+
+impl PictureKind {
+    /// The word of the job file, and of the file's name.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Highlight => "highlight",
+            Self::Curvature => "curvature",
+            Self::Deviation => "deviation",
         }
     }
 }

@@ -15,7 +15,7 @@ use super::output::Staged;
 use super::own_check::{OwnFinding, findings_of_faces, new_findings, touched};
 use super::part::Read;
 use super::plan::Part;
-use super::report::{DiagnosticReport, Edits, PartReport, Report, Status, WritePath};
+use super::report::{DiagnosticReport, Edits, PartReport, PictureReport, Report, Status, WritePath};
 use crate::document::Stamp;
 use crate::model::{ChangeSet, Model, Origin};
 
@@ -70,6 +70,7 @@ fn run_part(job: &Job, part: &Part, mode: Mode, stamp: &Stamp) -> PartReport {
             report.code = error.exit_code();
             report.failure = Some(error.failure());
             report.side_files.clear();
+            report.pictures.clear();
         }
     }
     report.seconds = start.elapsed().as_secs_f64();
@@ -85,7 +86,8 @@ fn go(job: &Job, part: &Part, mode: Mode, stamp: &Stamp, report: &mut PartReport
     let changed = &result.bytes;
     // The input's bytes serve again when nothing changed: a copy would double the memory.
     let bytes = changed.as_deref().unwrap_or_else(|| read.document.source().bytes());
-    let needs_model = !job.operation.is_empty() || !job.also.is_empty() || !job.validate.with.is_empty();
+    let wanted = [job.operation.is_empty(), job.also.is_empty(), job.pictures.is_empty()];
+    let needs_model = wanted.contains(&false) || !job.validate.with.is_empty();
     let after = if needs_model { Some(read_again(job, part, bytes, &result, report)?) } else { None };
     if let Some(model) = &after {
         chord(job, model)?;
@@ -97,6 +99,7 @@ fn go(job: &Job, part: &Part, mode: Mode, stamp: &Stamp, report: &mut PartReport
     let mut sides = Vec::new();
     if let Some(model) = &after {
         sides = side_files(job, part, model, report)?;
+        sides.extend(pictures(job, part, &read.model(), model, report)?);
         let judged = judge::judge(&job.validate, staged.path(), model, None)?;
         report.validators = judged.verdicts;
         report.losses.extend(judged.unasked.into_iter().map(|text| warning("validate.not-asked", text)));
@@ -265,6 +268,29 @@ fn side_files(
             Staged::write(&path, &judge::side_bytes(model, chord, format)?).map_err(PartError::Output)?,
         );
         report.side_files.push(path.to_string_lossy().into_owned());
+    }
+    Ok(staged)
+}
+
+/// Pictures of the faces that changed.
+fn pictures(
+    job: &Job,
+    part: &Part,
+    before: &Model,
+    after: &Model,
+    report: &mut PartReport,
+) -> Result<Vec<Staged>, PartError> {
+    let drawn = super::pictures::draw(before, after, &job.pictures)?;
+    if drawn.is_empty() && !job.pictures.is_empty() {
+        let text = "no picture was drawn, since no face changed".to_owned();
+        report.losses.push(warning("picture.no-face", text));
+    }
+    let mut staged = Vec::new();
+    for picture in drawn {
+        let path = part.output.with_extension(format!("{}.png", picture.kind.as_str()));
+        staged.push(Staged::write(&path, &picture.png).map_err(PartError::Output)?);
+        let (path, full_colour) = (path.to_string_lossy().into_owned(), picture.full_colour);
+        report.pictures.push(PictureReport { path, kind: picture.kind, full_colour });
     }
     Ok(staged)
 }

@@ -219,8 +219,11 @@ fn every_bad_input_has_its_own_error() {
         (region("contour = [[0, 0, 0], [90, 0, 0], [90, 90, 0]]"), "4 paste.contour-projection-failed"),
         (
             region("contour = [[-90, -90, 0], [90, -90, 0], [90, 90, 0], [-90, 90, 0]]"),
-            "4 paste.contour-projection-failed",
+            "4 paste.contour-larger-than-face",
         ),
+        (region("contour = [[50, 50, 0], [90, 50, 0], [90, 90, 0]]"), "4 paste.contour-off-face"),
+        (region("polygon = [[0, 0.2], [0.8, 0.2], [0.8, 0.8]]"), "4 paste.contour-touches-border"),
+        (region("contour = [[-40, 0, 0], [10, -10, 0], [10, 10, 0]]"), "4 paste.contour-touches-border"),
         (
             format!("{source}\ntarget = {{ face = {{ name = \"TOP\" }}, at = [-30, 80, 12] }}"),
             "4 paste.place-off-face",
