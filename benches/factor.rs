@@ -3,7 +3,12 @@
 //! `cargo bench --bench factor` prints a table up to a million unknowns; with `-- --export FOLDER` it writes the smaller
 //! matrices as plain binary files, for `benches/peer/factor.py` to factor by another program.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout, reason = "a benchmark that cannot go on stops")]
+#![allow(
+    missing_docs,
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a benchmark that cannot go on stops"
+)]
 
 mod support;
 
@@ -26,7 +31,10 @@ fn inner(side: usize, rows: usize) -> Mask {
 fn plate(side: usize) -> GridSystem {
     let knots = KnotVector::clamped_uniform(3, side + 1, 0.0, 1.0).unwrap();
     let count = knots.n_basis();
-    let net = knots.greville().into_iter().flat_map(|x| knots.greville().into_iter().map(move |y| [x, y, 0.0, 1.0]));
+    let net = knots
+        .greville()
+        .into_iter()
+        .flat_map(|x| knots.greville().into_iter().map(move |y| [x, y, 0.0, 1.0]));
     let surface = NurbsSurface::new(knots.clone(), knots.clone(), net.collect()).unwrap();
     let energy = Grams::new(&surface, [1.0; 2]).bending();
     let mut system = GridSystem::new(&inner(count, 2), [3, 3]);
@@ -70,7 +78,9 @@ fn row(name: &str, side: usize, system: &GridSystem) {
     });
     let by_degree = by_degree.map_or_else(|| "-".to_owned(), |s| format!("{s:.3}"));
     let (factor, peak) = (bytes as f64 / 1e6, peak_megabytes());
-    println!("| {name} {side}² | {size} | {dissected:.3} | {factor:.0} | {residual:.1e} | {by_degree} | {peak:.0} |");
+    println!(
+        "| {name} {side}² | {size} | {dissected:.3} | {factor:.0} | {residual:.1e} | {by_degree} | {peak:.0} |"
+    );
 }
 
 /// Greatest entry of what the solution leaves of the right sides, over the greatest of these.
@@ -110,9 +120,16 @@ fn main() {
     let most = if folder.is_some() { 320 } else { usize::MAX };
     println!("| matrix | unknowns | s | factor MB | residual | s by minimum degree | peak MB |");
     println!("|---|---|---|---|---|---|---|");
-    for (name, side) in
-        [("plate", 50), ("plate", 100), ("plate", 200), ("plate", 316), ("laplacian", 316), ("plate", 500), ("laplacian", 1000), ("plate", 1000)]
-    {
+    for (name, side) in [
+        ("plate", 50),
+        ("plate", 100),
+        ("plate", 200),
+        ("plate", 316),
+        ("laplacian", 316),
+        ("plate", 500),
+        ("laplacian", 1000),
+        ("plate", 1000),
+    ] {
         if side > most {
             continue;
         }

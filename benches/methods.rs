@@ -3,7 +3,12 @@
 //! `cargo bench --bench methods` prints the tables of `docs/benchmarks.md`. The collar is where the bump has ended and
 //! the region has not: its greatest mean curvature over the target's says what a reader of reflections sees.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout, reason = "a benchmark that cannot go on stops")]
+#![allow(
+    missing_docs,
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a benchmark that cannot go on stops"
+)]
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -55,10 +60,8 @@ fn figures(source: &NurbsSurface, scale: f64, result: &Pasted) -> Figures {
         for j in 0..=240 {
             let x = [f64::from(i) / 240.0, f64::from(j) / 240.0];
             let at = result.map.apply(x);
-            let (new, ground) = (
-                result.surface.derivatives(at[0], at[1]),
-                result.refined.derivatives(at[0], at[1]),
-            );
+            let (new, ground) =
+                (result.surface.derivatives(at[0], at[1]), result.refined.derivatives(at[0], at[1]));
             let normal = ground.normal().unwrap();
             let height = source.point(x[0], x[1]).z;
             let off = (new.point - (ground.point + normal * (scale * height))).norm();
@@ -97,7 +100,10 @@ fn main() {
         ("poisson, as published", Settings { turn: Turn::None, ..published.clone() }),
         ("poisson, turned by normals, as published", Settings { turn: Turn::Normal, ..published }),
         ("poisson, frames, finite volumes", replacing(Method::Poisson)),
-        ("poisson, frames, mixed gradients", Settings { existing: Existing::Stronger, ..by(Method::Poisson) }),
+        (
+            "poisson, frames, mixed gradients",
+            Settings { existing: Existing::Stronger, ..by(Method::Poisson) },
+        ),
         ("biharmonic", replacing(Method::Biharmonic)),
         ("displacement (default)", by(Method::Displacement)),
         ("fit, within 1e-4", by(Method::Fit)),

@@ -3,7 +3,12 @@
 //! `cargo bench --bench paste` prints the table; with `-- --million` it ends with a feature of a million control points,
 //! which takes some gigabytes.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout, reason = "a benchmark that cannot go on stops")]
+#![allow(
+    missing_docs,
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a benchmark that cannot go on stops"
+)]
 
 mod support;
 
@@ -60,7 +65,9 @@ fn row(method: Method, spans: [usize; 2], angle: f64, runs: usize) {
 }
 
 fn main() {
-    println!("| method | target | result | control points changed | s | µs for each of the result | peak MB |");
+    println!(
+        "| method | target | result | control points changed | s | µs for each of the result | peak MB |"
+    );
     println!("|---|---|---|---|---|---|---|");
     for spans in [[18, 20], [36, 40], [72, 80], [96, 100], [192, 200], [384, 400]] {
         row(Method::Displacement, spans, 0.0, 3);

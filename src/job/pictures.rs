@@ -36,6 +36,10 @@ const CHANGED: f64 = 0.01;
 const AROUND: f64 = 0.6;
 /// Tilt of the eye from the normal of the changed place: relief is not seen from above.
 const TILT: f64 = 0.55;
+/// Part of a normal along `z` from which `y` is up in the picture.
+const UPRIGHT: f64 = 0.85;
+/// Bands across a view, fewer than for a flat one: a curved face shows each many times.
+const BANDS: f64 = 8.0;
 /// A foot farther from its point than this part of the mesh is sought anew.
 const LOST: f64 = 1e-3;
 
@@ -53,44 +57,56 @@ pub(super) fn draw(before: &Model, after: &Model, kinds: &[PictureKind]) -> Resu
         old.add(before, was, None)?;
         new.add(after, is, Some((before, was)))?;
     }
-    let eye = new.eye();
-    if let Some(place) = new.place() {
-        old.crop(&place);
-        new.crop(&place);
-    }
-    kinds.iter().map(|&kind| picture(kind, &old, &new, &eye)).collect()
+    let options = options(new.eye(), new.place());
+    kinds.iter().map(|&kind| picture(kind, &old, &new, &options)).collect()
 }
 
 /// Faces with another surface, before and after.
 fn changed_faces(before: &Model, after: &Model) -> Vec<(FaceId, FaceId)> {
-    let known: BTreeMap<Origin, FaceId> = after.origins.faces.iter().map(|(id, origin)| (*origin, id)).collect();
-    let pairs = before.brep.faces.ids().filter_map(|was| Some((was, *known.get(&before.origins.faces[was])?)));
+    let known: BTreeMap<Origin, FaceId> =
+        after.origins.faces.iter().map(|(id, origin)| (*origin, id)).collect();
+    let pairs =
+        before.brep.faces.ids().filter_map(|was| Some((was, *known.get(&before.origins.faces[was])?)));
     pairs.filter(|(was, is)| before.brep.surface_of(*was) != after.brep.surface_of(*is)).collect()
 }
 
-fn picture(kind: PictureKind, old: &Drawn, new: &Drawn, eye: &Vector3<f64>) -> Result<Picture, PartError> {
-    let up = if eye.z.abs() > 0.85 * eye.norm() { Vector3::y() } else { Vector3::z() };
-    let across = up.cross(eye).try_normalize(0.0).unwrap_or_else(Vector3::x);
-    let tilted = eye - eye.cross(&across) * TILT;
-    let options = PictureOptions {
-        eye: tilted,
+/// Seen from a little above the normal of the changed place.
+fn options(normal: Vector3<f64>, focus: Option<BoundingBox>) -> PictureOptions {
+    let up = if normal.z.abs() > UPRIGHT { Vector3::y() } else { Vector3::z() };
+    let across = up.cross(&normal).try_normalize(0.0).unwrap_or_else(Vector3::x);
+    let above = normal.cross(&across);
+    PictureOptions {
+        eye: normal + above * TILT,
         up,
-        lights_above: *eye,
-        lights_along: eye.cross(&across),
+        lights_above: normal,
+        lights_along: above,
+        bands: BANDS,
+        focus,
         ..PictureOptions::default()
-    };
+    }
+}
+
+fn picture(
+    kind: PictureKind,
+    old: &Drawn,
+    new: &Drawn,
+    options: &PictureOptions,
+) -> Result<Picture, PartError> {
     let (drawn, full_colour) = match kind {
         PictureKind::Highlight => {
-            (highlight_lines(&[View { mesh: &old.mesh }, View { mesh: &new.mesh }], &options), None)
+            (highlight_lines(&[View { mesh: &old.mesh }, View { mesh: &new.mesh }], options), None)
         }
         PictureKind::Curvature => {
             let full = full_colour(&[&old.curvature, &new.curvature], BEYOND);
             let views = [old, new].map(|d| FieldView { mesh: &d.mesh, values: &d.curvature, full });
-            (field(&views, &options), Some(full))
+            (field(&views, options), Some(full))
         }
         PictureKind::Deviation => {
             let full = full_colour(&[&new.deviation], 0.0);
-            (field(&[FieldView { mesh: &new.mesh, values: &new.deviation, full }], &options), Some(full))
+            let view = FieldView { mesh: &new.mesh, values: &new.deviation, full };
+            // One view instead of two.
+            let options = PictureOptions { width: options.width / 2, ..options.clone() };
+            (field(&[view], &options), Some(full))
         }
     };
     let png = drawn.map_err(|error| PartError::Picture(error.to_string()))?;
@@ -178,18 +194,6 @@ impl Drawn {
         let around = Vector3::repeat(AROUND * place.diagonal());
         Some(BoundingBox { min: place.min - around, max: place.max + around })
     }
-
-    /// Leaves out the triangles that have no corner in the box.
-    fn crop(&mut self, place: &BoundingBox) {
-        let inside = |p: &Point3<f64>| (0..3).all(|k| p[k] >= place.min[k] && p[k] <= place.max[k]);
-        let keep: Vec<bool> = self.mesh.corners().map(|corners| corners.iter().any(inside)).collect();
-        let mut kept = keep.iter();
-        self.mesh.triangles.retain(|_| kept.next() == Some(&true));
-        let mut kept = keep.iter();
-        self.mesh.normals.retain(|_| kept.next() == Some(&true));
-        let mut kept = keep.iter();
-        self.mesh.faces.retain(|_| kept.next() == Some(&true));
-    }
 }
 
 /// Whether the surface's own normal points out of the face.
@@ -201,7 +205,8 @@ fn outward(model: &Model, face: FaceId) -> bool {
 /// Triangles of a face, short enough for numbers at their corners to say what lies between.
 fn face_mesh(model: &Model, face: FaceId) -> Result<Mesh, PartError> {
     let mesh = |tolerances: &Tolerances| {
-        tessellate_faces(&model.brep, &[face], tolerances).map_err(|error| PartError::Picture(error.to_string()))
+        tessellate_faces(&model.brep, &[face], tolerances)
+            .map_err(|error| PartError::Picture(error.to_string()))
     };
     let ends = model.brep.vertices.iter().map(|(_, vertex)| &vertex.point);
     let rough = mesh(&Tolerances::for_size(BoundingBox::of(ends).diagonal().max(f64::MIN_POSITIVE)))?;

@@ -15,7 +15,7 @@ pub mod sparse;
 pub use affine::{Affine, cofactor, minimal_rotation};
 pub use bounds::BoundingBox;
 pub use frame::Frame;
-pub use nested_dissection::nested_dissection;
 pub use nalgebra::{Matrix2, Matrix3, Point2, Point3, Vector2, Vector3, Vector4};
+pub use nested_dissection::nested_dissection;
 pub use rigid_fit::rigid_fit;
 pub use sprs::{CsMat, TriMat, kronecker_product};

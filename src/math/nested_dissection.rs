@@ -80,7 +80,8 @@ mod tests {
 
     /// A disc of places.
     fn disc(side: usize) -> Vec<[usize; 2]> {
-        let inside = |i: usize, j: usize| (2 * i + 1).abs_diff(side).pow(2) + (2 * j + 1).abs_diff(side).pow(2);
+        let inside =
+            |i: usize, j: usize| (2 * i + 1).abs_diff(side).pow(2) + (2 * j + 1).abs_diff(side).pow(2);
         let all = (0..side).flat_map(|i| (0..side).map(move |j| (i, j)));
         all.filter(|&(i, j)| inside(i, j) <= side * side).map(|(i, j)| [i, j]).collect()
     }
@@ -120,7 +121,8 @@ mod tests {
     fn the_factor_stays_far_smaller_than_in_the_order_of_the_rows() {
         let places = disc(36);
         let rows: Vec<usize> = (0..places.len()).collect();
-        let (by_rows, dissected) = (fill(&places, 2, &rows), fill(&places, 2, &nested_dissection(&places, [2, 2])));
+        let (by_rows, dissected) =
+            (fill(&places, 2, &rows), fill(&places, 2, &nested_dissection(&places, [2, 2])));
         assert!(2 * dissected < by_rows, "{dissected} against {by_rows}");
     }
 }

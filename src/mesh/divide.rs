@@ -52,7 +52,8 @@ fn cut(mesh: &Mesh, middles: &BTreeMap<Side, u32>) -> Mesh {
     let mut out = Mesh { vertices: mesh.vertices.clone(), ..Mesh::default() };
     for (at, corners) in mesh.triangles.iter().enumerate() {
         let normals = mesh.normals.get(at).copied();
-        let own: [Corner; 3] = std::array::from_fn(|k| (corners[k], normals.map_or(Vector3::zeros(), |n| n[k])));
+        let own: [Corner; 3] =
+            std::array::from_fn(|k| (corners[k], normals.map_or(Vector3::zeros(), |n| n[k])));
         let mut put = |triangle: [Corner; 3]| {
             out.triangles.push(triangle.map(|corner| corner.0));
             out.faces.extend(mesh.faces.get(at));

@@ -6,7 +6,7 @@ mod jobs;
 mod locality;
 mod parts;
 mod paste;
-mod paste_corpus;
+mod paste_golden;
 mod paste_targets;
 mod patho;
 #[path = "../support/mod.rs"]

@@ -112,33 +112,6 @@ fn letters_and_a_turned_groove_on_the_plane_top_of_a_solid() {
 }
 
 #[test]
-fn letters_on_the_skin_of_a_thin_solid() {
-    let text = job(
-        "vamp.step",
-        "\"freecad\"",
-        &[
-            "source = { file = \"symbol.step\" }\ntarget = { face = { name = \"OUTER_SKIN\" }, at = [170, 8, 75] }\nscale = [0.6, 0.6, 1.0]",
-        ],
-    );
-    let fixture = with_features("vamp/vamp.step").file("job.toml", text);
-    accepted(&fixture, "vamp.step", "OUTER_SKIN", 3.0);
-}
-
-#[test]
-fn a_turned_and_mirrored_bump_on_a_door_between_its_holes() {
-    let text = job(
-        "door-solid.step",
-        "\"freecad\"",
-        &[
-            "source = { file = \"bump.step\" }\ntarget = { face = { name = \"OUTER_SKIN\" }, at = [500, 500, 95] }\n\
-         rotate = \"30 deg\"\nmirror = \"v\"\ntolerance = \"0.05 mm\"",
-        ],
-    );
-    let fixture = with_features("door-solid/door-solid.step").file("job.toml", text);
-    accepted(&fixture, "door-solid.step", "OUTER_SKIN", 6.6);
-}
-
-#[test]
 fn a_row_of_grooves_by_the_biharmonic_method() {
     let text = job(
         "hood.step",

@@ -142,13 +142,17 @@ fn a10_the_fit_turns_mirrors_and_scales() {
     let one = |&((step, mirror), scale): &((i32, Mirror), [f64; 3])| {
         let angle = f64::from(15 * step).to_radians();
         let sign = if mirror == Mirror::None { 1.0 } else { -1.0 };
-        let settings = Settings { angle, mirror, scale, method: Some(Method::Fit), ..Settings::new(tolerance) };
+        let settings =
+            Settings { angle, mirror, scale, method: Some(Method::Fit), ..Settings::new(tolerance) };
         let result = pasted(&source, &target, 0.42, &settings).unwrap();
         let turn = Matrix3::new(angle.cos(), -angle.sin(), 0.0, angle.sin(), angle.cos(), 0.0, 0.0, 0.0, 1.0)
             * Matrix3::from_diagonal(&Vector3::new(scale[0], sign * scale[1], scale[2]));
         let off = placed_error(&result, &source, &turn);
         let error = result.fit_error.unwrap();
-        assert!(error <= tolerance && off <= tolerance, "{step} {mirror:?} {scale:?}: {off:.3e}, {error:.3e}");
+        assert!(
+            error <= tolerance && off <= tolerance,
+            "{step} {mirror:?} {scale:?}: {off:.3e}, {error:.3e}"
+        );
         assert!(off <= 1.005 * error + 1e-11, "{step} {mirror:?} {scale:?}: {off:.3e} against {error:.3e}");
         assert!(outside_is_untouched(&result));
     };

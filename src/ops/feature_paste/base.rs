@@ -6,8 +6,8 @@
 
 use super::PasteError;
 use crate::geometry::nurbs::{KnotVector, NurbsSurface, gram};
-use crate::ops::net::{GridSystem, Mask};
 use crate::ops::net::sampling::mean_lengths;
+use crate::ops::net::{GridSystem, Mask};
 
 /// Points in each direction at which the physical size of the domain is measured.
 const SIZE_SAMPLES: usize = 33;

@@ -85,7 +85,8 @@ impl GridSystem {
             let (row, column) = (own / self.columns, own % self.columns);
             for (slot, value) in stencil.iter().enumerate().filter(|(_, value)| **value != 0.0) {
                 // Entries were added at places that exist.
-                let at = (row + slot / width - self.reach[0]) * self.columns + column + slot % width - self.reach[1];
+                let at = (row + slot / width - self.reach[0]) * self.columns + column + slot % width
+                    - self.reach[1];
                 indices.extend(self.number[at]);
                 values.push(*value);
             }
@@ -99,7 +100,8 @@ impl GridSystem {
     /// # Errors
     /// [`SingularSystem`].
     pub fn factor(&self) -> Result<SymmetricFactor, SingularSystem> {
-        let places: Vec<[usize; 2]> = self.places.iter().map(|at| [at / self.columns, at % self.columns]).collect();
+        let places: Vec<[usize; 2]> =
+            self.places.iter().map(|at| [at / self.columns, at % self.columns]).collect();
         SymmetricFactor::ordered(&self.matrix(), &nested_dissection(&places, self.reach))
     }
 
@@ -125,7 +127,8 @@ mod tests {
     /// The five-point Laplacian with given values around: linear functions are its solutions.
     #[test]
     fn a_linear_function_is_harmonic() {
-        let linear = |at: usize, columns: usize| 3.0 * (at / columns) as f64 - 2.0 * (at % columns) as f64 + 1.0;
+        let linear =
+            |at: usize, columns: usize| 3.0 * (at / columns) as f64 - 2.0 * (at % columns) as f64 + 1.0;
         let (rows, columns) = (30, 24);
         let mut inner = Mask::empty(rows, columns);
         for i in 1..rows - 1 {

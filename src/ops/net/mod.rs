@@ -5,8 +5,8 @@
 
 pub mod acting;
 pub mod cells;
-pub mod grid_system;
 pub mod grams;
+pub mod grid_system;
 pub mod layout;
 pub mod polygon;
 pub mod sampling;

@@ -161,4 +161,3 @@ fn fit(
     let error = greatest_deviation(field, &ground, &surface, &cells);
     Ok(Fitted { surface, free, error })
 }
-

@@ -11,8 +11,8 @@ use crate::geometry::nurbs::{NurbsCurve2, NurbsSurface, SurfaceLocator, Wrap};
 use crate::math::{Affine, BoundingBox, Matrix3, Vector3};
 use crate::model::Context;
 use crate::ops::OperationError;
-use crate::ops::net::{Contour, Domain, Polygon};
 use crate::ops::net::layout::{face_name, lay_out, spline_of};
+use crate::ops::net::{Contour, Domain, Polygon};
 
 /// A feature taken off its face: all that a paste needs of it, in its own units.
 #[derive(Debug, Clone)]
