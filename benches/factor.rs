@@ -64,17 +64,17 @@ fn laplacian(side: usize) -> GridSystem {
 fn row(name: &str, side: usize, system: &GridSystem) {
     let size = system.len();
     let right: Vec<f64> = (0..3 * size).map(|k| (k as f64).sin()).collect();
-    let solved = |factor: SymmetricFactor| {
+    let solved = |factor: &SymmetricFactor| {
         let mut x = right.clone();
         factor.solve(&mut x);
         (x, factor.bytes())
     };
     let runs = if size > 200_000 { 1 } else { 3 };
-    let (dissected, (x, bytes)) = timed(runs, || solved(system.factor().unwrap()));
-    let residual = residual(&system.matrix(), &x, &right);
+    let (dissected, (x, bytes)) = timed(runs, || solved(system.factor().unwrap().unknowns()));
+    let residual = residual(&system.lower(), &x, &right);
     let by_degree = (size <= 300_000).then(|| {
-        let matrix = system.matrix();
-        timed(runs, || solved(SymmetricFactor::new(&matrix).unwrap())).0
+        let matrix = system.lower();
+        timed(runs, || solved(&SymmetricFactor::new(&matrix).unwrap())).0
     });
     let by_degree = by_degree.map_or_else(|| "-".to_owned(), |s| format!("{s:.3}"));
     let (factor, peak) = (bytes as f64 / 1e6, peak_megabytes());
@@ -103,7 +103,7 @@ fn residual(lower: &CsMat<f64>, x: &[f64], right: &[f64]) -> f64 {
 
 /// Size, entries, then starts, columns and values of the lower triangle, little-endian, eight bytes each.
 fn export(folder: &Path, name: &str, system: &GridSystem) {
-    let matrix = system.matrix();
+    let matrix = system.lower();
     let mut bytes = Vec::new();
     let counts = [matrix.rows(), matrix.nnz()];
     let indices = matrix.proper_indptr();

@@ -4,6 +4,9 @@ mod accepted;
 mod detail;
 mod jobs;
 mod locality;
+#[path = "../support/occ.rs"]
+#[allow(dead_code, reason = "shared with other test binaries")]
+mod occ;
 mod parts;
 mod paste;
 mod paste_golden;

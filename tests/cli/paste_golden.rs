@@ -11,8 +11,9 @@ use resurf::model::{Model, Origin};
 use serde_json::Value;
 
 use crate::Fixture;
+use crate::occ::occ_compared;
 use crate::paste::{job, model, spline, with_features};
-use crate::support::{corpus, occ_compared};
+use crate::support::corpus;
 
 /// A job on a solid: its part, the target face, and the rest of the operation.
 struct Golden {

@@ -10,6 +10,9 @@ use serde_json::Value;
 
 mod measures;
 
+#[path = "../support/occ.rs"]
+#[allow(dead_code, reason = "shared with other test binaries")]
+mod occ;
 #[path = "../support/mod.rs"]
 #[allow(dead_code, reason = "shared with other test binaries")]
 mod support;
@@ -20,7 +23,7 @@ fn root() -> &'static Path {
 
 /// The interpreter that has Open CASCADE.
 fn python() -> Option<PathBuf> {
-    support::open_cascade("occ_attributes.py")
+    occ::open_cascade("occ_attributes.py")
 }
 
 /// What Open CASCADE reads of a file beside its geometry.

@@ -2,23 +2,22 @@
 //! few rows and columns away: assembled in place, solved by nested dissection.
 
 use super::Mask;
-use crate::math::sparse::{SingularSystem, SymmetricFactor};
-use crate::math::{CsMat, nested_dissection};
+use crate::math::sparse::SingularSystem;
+use crate::math::{CsMat, GridFactor, GridMatrix};
 
-/// The system in the making.
-///
-/// INVARIANT: unknowns are numbered by ascending flat index; the stencil of one has a slot for each place up to itself
-/// that is within reach.
+/// The system in the making: a matrix over the box of the unknowns.
 #[derive(Debug, Clone)]
 pub struct GridSystem {
+    matrix: GridMatrix,
+    /// First row and column of the box, and its count of columns.
+    first: [usize; 2],
+    width: usize,
+    /// Columns of the net.
     columns: usize,
-    reach: [usize; 2],
-    /// Flat indices of the unknowns.
+    /// Flat indices of the unknowns on the net.
     places: Vec<usize>,
     /// Number of the unknown at a flat index.
     number: Vec<Option<usize>>,
-    /// Entries with places before and at the unknown's own, row by row of the grid.
-    stencils: Vec<f64>,
 }
 
 impl GridSystem {
@@ -31,8 +30,10 @@ impl GridSystem {
         for (k, &at) in places.iter().enumerate() {
             number[at] = Some(k);
         }
-        let stencils = vec![0.0; places.len() * slots(reach)];
-        Self { columns, reach, places, number, stencils }
+        let sides = unknowns.extent().map(|extent| extent.map(|(first, last)| (first, last + 1 - first)));
+        let [(i, height), (j, width)] = sides.unwrap_or_default();
+        let matrix = GridMatrix::zeros(height, width, reach);
+        Self { matrix, first: [i, j], width, columns, places, number }
     }
 
     /// Count of unknowns.
@@ -60,49 +61,38 @@ impl GridSystem {
     }
 
     /// Adds to the entry of the unknown of this number with the one at a flat index. The matrix is symmetric: of both
-    /// orders of a pair the one counts whose place comes first, and the other is left out.
+    /// orders of a pair the one counts whose second place comes first, and the other is left out.
     ///
     /// # Panics
     /// When the places are farther apart than the reach.
     pub fn add(&mut self, unknown: usize, at: usize, value: f64) {
         let own = self.places[unknown];
-        if at > own || self.number[at].is_none() {
-            return;
+        if at <= own && self.number[at].is_some() {
+            self.matrix.add(self.node(own), self.node(at), value);
         }
-        let (back, across) = (own / self.columns - at / self.columns, at % self.columns + self.reach[1]);
-        let column = across - own % self.columns;
-        assert!(back <= self.reach[0] && column <= 2 * self.reach[1], "coupled places are within reach");
-        let slot = (self.reach[0] - back) * (2 * self.reach[1] + 1) + column;
-        self.stencils[unknown * slots(self.reach) + slot] += value;
+    }
+
+    /// Place in the box.
+    fn node(&self, at: usize) -> usize {
+        (at / self.columns - self.first[0]) * self.width + at % self.columns - self.first[1]
+    }
+
+    fn nodes(&self) -> Vec<usize> {
+        self.places.iter().map(|&at| self.node(at)).collect()
     }
 
     /// The lower triangle as compressed rows.
     #[must_use]
-    pub fn matrix(&self) -> CsMat<f64> {
-        let (mut starts, mut indices, mut values) = (vec![0], Vec::new(), Vec::new());
-        let width = 2 * self.reach[1] + 1;
-        for (own, stencil) in self.places.iter().zip(self.stencils.chunks_exact(slots(self.reach))) {
-            let (row, column) = (own / self.columns, own % self.columns);
-            for (slot, value) in stencil.iter().enumerate().filter(|(_, value)| **value != 0.0) {
-                // Entries were added at places that exist.
-                let at = (row + slot / width - self.reach[0]) * self.columns + column + slot % width
-                    - self.reach[1];
-                indices.extend(self.number[at]);
-                values.push(*value);
-            }
-            starts.push(indices.len());
-        }
-        CsMat::new((self.len(), self.len()), starts, indices, values)
+    pub fn lower(&self) -> CsMat<f64> {
+        self.matrix.lower(&self.nodes())
     }
 
     /// The factor.
     ///
     /// # Errors
     /// [`SingularSystem`].
-    pub fn factor(&self) -> Result<SymmetricFactor, SingularSystem> {
-        let places: Vec<[usize; 2]> =
-            self.places.iter().map(|at| [at / self.columns, at % self.columns]).collect();
-        SymmetricFactor::ordered(&self.matrix(), &nested_dissection(&places, self.reach))
+    pub fn factor(&self) -> Result<GridFactor, SingularSystem> {
+        self.matrix.factored(&self.nodes())
     }
 
     /// Solves in place: a column of right sides after another, each in the order of the unknowns.
@@ -110,14 +100,9 @@ impl GridSystem {
     /// # Errors
     /// [`SingularSystem`].
     pub fn solve(&self, right: &mut [f64]) -> Result<(), SingularSystem> {
-        self.factor()?.solve(right);
+        self.factor()?.unknowns().solve(right);
         Ok(())
     }
-}
-
-/// Slots of one stencil: whole rows before the own one, and that up to the own place.
-fn slots(reach: [usize; 2]) -> usize {
-    reach[0] * (2 * reach[1] + 1) + reach[1] + 1
 }
 
 #[cfg(test)]
