@@ -9,7 +9,7 @@ use super::failure::PartError;
 use super::file::PictureKind;
 use crate::brep::FaceId;
 use crate::geometry::Surface;
-use crate::geometry::nurbs::SurfaceLocator;
+use crate::geometry::nurbs::{NurbsSurface, SurfaceLocator, Wrap};
 use crate::math::{BoundingBox, Point3, Vector3};
 use crate::mesh::divide::divided;
 use crate::mesh::{Mesh, Tolerances, tessellate_faces};
@@ -33,11 +33,13 @@ const BEYOND: f64 = 0.01;
 /// Deviation, as a part of the greatest, from which a place counts as changed.
 const CHANGED: f64 = 0.01;
 /// How far around the changed place is drawn, in diagonals of its box.
-const AROUND: f64 = 0.6;
+const AROUND: f64 = 0.4;
 /// Tilt of the eye from the normal of the changed place: relief is not seen from above.
-const TILT: f64 = 0.55;
+const TILT: f64 = 0.45;
 /// Part of a normal along `z` from which `y` is up in the picture.
 const UPRIGHT: f64 = 0.85;
+/// Length of the mean normal above which a change is on one side of the part.
+const ONE_SIDE: f64 = 0.6;
 /// Bands across a view, fewer than for a flat one: a curved face shows each many times.
 const BANDS: f64 = 8.0;
 /// A foot farther from its point than this part of the mesh is sought anew.
@@ -165,21 +167,25 @@ impl Drawn {
         Ok(())
     }
 
-    /// Mean normal of what changed, weighted by how far it went; of the whole where nothing did.
+    /// Mean normal of what changed, weighted by how far it went; where it looks to all sides, that of the place that
+    /// went farthest.
     fn eye(&self) -> Vector3<f64> {
-        let weighted = |weight: &dyn Fn(u32) -> f64| -> Vector3<f64> {
-            let corners = self.mesh.corners().zip(&self.mesh.triangles).zip(&self.mesh.normals);
-            let one = |(([a, b, c], at), normals): (([Point3<f64>; 3], &[u32; 3]), &[Vector3<f64>; 3])| {
-                let area = (b - a).cross(&(c - a)).norm();
-                area * at.iter().zip(normals).map(|(k, n)| weight(*k) * n).sum::<Vector3<f64>>()
-            };
-            corners.map(one).sum()
-        };
-        let by_change = weighted(&|k| self.deviation[k as usize].abs());
-        by_change
-            .try_normalize(0.0)
-            .or_else(|| weighted(&|_| 1.0).try_normalize(0.0))
-            .unwrap_or_else(Vector3::z)
+        let (mut sum, mut total) = (Vector3::zeros(), 0.0);
+        let mut farthest = (0.0, Vector3::z());
+        for (([a, b, c], at), normals) in
+            self.mesh.corners().zip(&self.mesh.triangles).zip(&self.mesh.normals)
+        {
+            let area = (b - a).cross(&(c - a)).norm();
+            for (k, normal) in at.iter().zip(normals) {
+                let moved = self.deviation[*k as usize].abs();
+                sum += normal * (area * moved);
+                total += area * moved;
+                if moved > farthest.0 {
+                    farthest = (moved, *normal);
+                }
+            }
+        }
+        if sum.norm() > ONE_SIDE * total { sum.normalize() } else { farthest.1 }
     }
 
     /// The box to draw: that of what changed and its neighbourhood; `None` where most of the face changed.
@@ -217,23 +223,13 @@ fn face_mesh(model: &Model, face: FaceId) -> Result<Mesh, PartError> {
 
 /// Parameters of the surface nearest to each vertex: from those of neighbours, or from the given ones.
 fn feet(surface: &Surface, mesh: &Mesh, seeds: Option<&[(f64, f64)]>) -> Vec<(f64, f64)> {
-    let locator = match surface {
-        Surface::Nurbs(spline) => Some(SurfaceLocator::new(spline, surface.wrap())),
-        _ => None,
-    };
-    let anew = |point: &Point3<f64>| match &locator {
-        Some(locator) => {
-            let found = locator.closest(point);
-            (found.u, found.v)
-        }
-        None => surface.parameters_of(point, None),
-    };
+    let feet = Feet::on(surface);
     let far = LOST * BoundingBox::of(&mesh.vertices).diagonal();
     let from = |point: &Point3<f64>, seed: (f64, f64)| {
-        let found = surface.parameters_of(point, Some(seed));
+        let found = feet.near(point, seed);
         let away = (surface.point(found.0, found.1) - point).norm();
         // What was moved is away from the old surface, and still has its foot near the seed.
-        if away > far && seeds.is_none() { anew(point) } else { found }
+        if away > far && seeds.is_none() { feet.anywhere(point) } else { found }
     };
     if let Some(seeds) = seeds {
         return mesh.vertices.iter().zip(seeds).map(|(point, seed)| from(point, *seed)).collect();
@@ -243,7 +239,7 @@ fn feet(surface: &Surface, mesh: &Mesh, seeds: Option<&[(f64, f64)]>) -> Vec<(f6
     let mut open = VecDeque::new();
     for start in 0..mesh.vertices.len() {
         if known[start].is_none() {
-            known[start] = Some(anew(&mesh.vertices[start]));
+            known[start] = Some(feet.anywhere(&mesh.vertices[start]));
             open.push_back(start);
         }
         while let Some(at) = open.pop_front() {
@@ -257,6 +253,44 @@ fn feet(surface: &Surface, mesh: &Mesh, seeds: Option<&[(f64, f64)]>) -> Vec<(f6
         }
     }
     known.into_iter().map(Option::unwrap_or_default).collect()
+}
+
+/// Feet of points on a surface; whether it closes on itself is asked once.
+enum Feet<'a> {
+    Spline(&'a NurbsSurface, SurfaceLocator<'a>, Wrap),
+    Other(&'a Surface),
+}
+
+impl<'a> Feet<'a> {
+    fn on(surface: &'a Surface) -> Self {
+        match surface {
+            Surface::Nurbs(spline) => {
+                let wrap = surface.wrap();
+                Self::Spline(spline, SurfaceLocator::new(spline, wrap), wrap)
+            }
+            other => Self::Other(other),
+        }
+    }
+
+    fn anywhere(&self, point: &Point3<f64>) -> (f64, f64) {
+        match self {
+            Self::Spline(_, locator, _) => {
+                let found = locator.closest(point);
+                (found.u, found.v)
+            }
+            Self::Other(surface) => surface.parameters_of(point, None),
+        }
+    }
+
+    fn near(&self, point: &Point3<f64>, seed: (f64, f64)) -> (f64, f64) {
+        match self {
+            Self::Spline(spline, _, wrap) => {
+                let found = spline.closest_from(point, seed, *wrap);
+                (found.u, found.v)
+            }
+            Self::Other(surface) => surface.parameters_of(point, Some(seed)),
+        }
+    }
 }
 
 fn neighbours(mesh: &Mesh) -> Vec<Vec<usize>> {

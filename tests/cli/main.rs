@@ -11,7 +11,9 @@ mod parts;
 mod paste;
 mod paste_golden;
 mod paste_targets;
+mod paste_words;
 mod patho;
+mod pictures;
 #[path = "../support/mod.rs"]
 #[allow(dead_code, reason = "shared with other test binaries")]
 mod support;

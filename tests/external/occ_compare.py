@@ -1,6 +1,6 @@
-"""What a job changed in a part, as Open CASCADE reads the files before and after it: one JSON object.
+"""What jobs changed in parts, as Open CASCADE reads the files before and after: one line of JSON for each pair.
 
-Usage: occ_compare.py BEFORE AFTER. Needs cadquery-ocp; with `--can` it only says whether it can be used.
+Usage: occ_compare.py BEFORE AFTER [BEFORE AFTER]… Needs cadquery-ocp; with `--can` it only says whether it can be used.
 
 Faces and edges are paired by their order, which a patched file keeps; edges by what the paired faces use. Points of
 curves and surfaces are compared as bits. Of a face that was a B-spline and still is, the old surface is brought to the
@@ -155,6 +155,7 @@ def compare(before, after):
 if __name__ == "__main__":
     if "--can" not in sys.argv:
         Message.DefaultMessenger_s().ChangePrinters().Clear()
-        print(json.dumps(compare(sys.argv[1], sys.argv[2])), flush=True)
+        for before, after in zip(sys.argv[1::2], sys.argv[2::2]):
+            print(json.dumps(compare(before, after)), flush=True)
         sys.stdout.flush()
         os._exit(0)

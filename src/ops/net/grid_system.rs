@@ -126,13 +126,13 @@ mod tests {
         }
         let mut system = GridSystem::new(&inner, [1, 1]);
         let mut right = vec![0.0; system.len()];
-        for k in 0..system.len() {
+        for (k, sum) in right.iter_mut().enumerate() {
             let own = system.places()[k];
             system.add(k, own, 4.0);
             for at in [own - columns, own - 1, own + 1, own + columns] {
                 system.add(k, at, -1.0);
                 if system.number(at).is_none() {
-                    right[k] += linear(at, columns);
+                    *sum += linear(at, columns);
                 }
             }
         }
