@@ -14,6 +14,7 @@ mod paste_targets;
 mod paste_words;
 mod patho;
 mod pictures;
+mod stated;
 #[path = "../support/mod.rs"]
 #[allow(dead_code, reason = "shared with other test binaries")]
 mod support;
