@@ -40,7 +40,7 @@ fn bump(spans: usize) -> NurbsSurface {
 }
 
 fn cylinder() -> NurbsSurface {
-    part([8, 7], |x, y| {
+    part([10, 10], |x, y| {
         let angle = 1.6 * (x - 0.5);
         [6.0 * angle.sin(), 10.0 * (y - 0.5), 6.0 * angle.cos() - 6.0]
     })
@@ -54,7 +54,14 @@ struct Figures {
     mean_square: f64,
 }
 
+/// Radii of the collar: from where the bump's control points cease to act to where those of the region do.
+fn collar(source: &NurbsSurface) -> std::ops::Range<f64> {
+    let span = 1.0 / source.knots_u().spans().count() as f64;
+    BUMP + 2.0 * span..CONTOUR + 2.0 * span
+}
+
 fn figures(source: &NurbsSurface, scale: f64, result: &Pasted) -> Figures {
+    let collar = collar(source);
     let (mut bent, mut peak, mut greatest, mut sum, mut count) = ([0.0_f64; 2], 0.0_f64, 0.0_f64, 0.0, 0.0);
     for i in 0..=240 {
         for j in 0..=240 {
@@ -70,7 +77,7 @@ fn figures(source: &NurbsSurface, scale: f64, result: &Pasted) -> Figures {
             count += 1.0;
             peak = peak.max(normal.dot(&(new.point - ground.point)) / (HEIGHT * scale));
             let r = (x[0] - 0.5).hypot(x[1] - 0.5);
-            if (1.1 * BUMP..CONTOUR + 0.06).contains(&r) {
+            if collar.contains(&r) {
                 for (most, of) in bent.iter_mut().zip([&new, &ground]) {
                     *most = most.max(of.curvatures().unwrap().1.abs());
                 }
