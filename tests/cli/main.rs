@@ -1,7 +1,10 @@
 //! The real program in a fresh folder: what it prints, what it leaves, and how it ends.
 
 mod accepted;
+mod batch;
+mod cluster;
 mod detail;
+mod diff;
 mod jobs;
 mod locality;
 #[path = "../support/occ.rs"]
@@ -14,6 +17,8 @@ mod paste_targets;
 mod paste_words;
 mod patho;
 mod pictures;
+mod regress;
+mod solids;
 mod stated;
 #[path = "../support/mod.rs"]
 #[allow(dead_code, reason = "shared with other test binaries")]
