@@ -45,8 +45,8 @@ pub enum PartError {
     /// A side file cannot be made.
     #[error("the side mesh cannot be made: {0}")]
     Mesh(String),
-    /// A picture cannot be made.
-    #[error("the picture cannot be made: {0}")]
+    /// A picture cannot be drawn.
+    #[error("the picture cannot be drawn: {0}")]
     Picture(String),
     /// What was held cannot be proved.
     #[error("the proof sheet cannot be made: {}", .0.join("; "))]
@@ -158,6 +158,7 @@ impl PartError {
             Self::Open(_) | Self::Damaged(_) | Self::Folder(_) | Self::NoFile(_) => code::UNREADABLE,
             Self::Setting { .. } => code::USAGE,
             Self::Operate(error) if error.code().starts_with("internal.") => code::INTERNAL,
+            Self::Operate(error) if error.code().ends_with(".net-too-large") => code::RESOURCE,
             Self::Operate(_) | Self::Lower(_) | Self::Mesh(_) | Self::Picture(_) | Self::Proof(_) => {
                 code::OPERATION
             }

@@ -29,10 +29,12 @@ pub struct Job {
     pub inputs: Vec<String>,
     /// Where each result goes, relative to the job file; `{dir}`, `{stem}` and `{ext}` are those of the input.
     pub output: String,
-    /// Side files beside the output: meshes for viewing and for OpenSCAD, a picture of before and after, and a sheet that
-    /// proves what was held.
+    /// Side files beside the output: meshes for viewing and for OpenSCAD, and a sheet that proves what was held.
     #[serde(default)]
     pub also: Vec<SideFile>,
+    /// Pictures beside the output, as PNG, of the faces that the operations changed.
+    #[serde(default)]
+    pub pictures: Vec<PictureKind>,
     /// Bounds on whatever must be approximated.
     #[serde(default)]
     pub tolerance: ToleranceSettings,
@@ -79,8 +81,6 @@ pub enum SideFile {
     ThreeMf,
     /// Binary glTF with names and colours.
     Glb,
-    /// A picture: highlight lines of the part before and after.
-    Png,
     /// A sheet of what was held, which `resurf verify` checks.
     Proof,
 }
@@ -94,7 +94,6 @@ impl SideFile {
             Self::Off => "off",
             Self::ThreeMf => "3mf",
             Self::Glb => "glb",
-            Self::Png => "png",
             Self::Proof => "proof.json",
         }
     }
@@ -107,7 +106,7 @@ impl SideFile {
             Self::Off => Some(SideFormat::Off),
             Self::ThreeMf => Some(SideFormat::ThreeMf),
             Self::Glb => Some(SideFormat::Glb),
-            Self::Png | Self::Proof => None,
+            Self::Proof => None,
         }
     }
 }
@@ -123,6 +122,30 @@ pub enum SideFormat {
     ThreeMf,
     /// Binary glTF with names and colours.
     Glb,
+}
+
+/// What a picture shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize, serde::Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum PictureKind {
+    /// Highlight lines before and after.
+    Highlight,
+    /// Mean curvature before and after: red where the face bulges outwards.
+    Curvature,
+    /// Deviation of the new faces from the old: red outwards.
+    Deviation,
+}
+
+impl PictureKind {
+    /// The word of the job file, and of the file's name.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Highlight => "highlight",
+            Self::Curvature => "curvature",
+            Self::Deviation => "deviation",
+        }
+    }
 }
 
 /// Bounds on approximation.

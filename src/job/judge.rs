@@ -207,14 +207,6 @@ fn placed_mesh(
     Ok(whole)
 }
 
-/// Triangles of all bodies, each where the assembly has it; `fineness` is the chord over the diagonal.
-///
-/// # Errors
-/// [`PartError::Mesh`] naming the face.
-pub fn whole_mesh(model: &Model, fineness: f64) -> Result<Mesh, PartError> {
-    placed_mesh(model, Some(fineness * diagonal(model)), |_| true)
-}
-
 /// Shows the mesh of every instance of the bodies that are wanted; each body is meshed once.
 fn each_placed(
     model: &Model,

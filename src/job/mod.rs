@@ -28,6 +28,7 @@ pub mod own_check;
 pub mod part;
 pub mod paste_file;
 mod paste_operate;
+mod pictures;
 pub mod plan;
 pub mod proof;
 pub mod read;

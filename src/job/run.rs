@@ -105,7 +105,8 @@ fn go(
     // The input's bytes serve again when nothing changed: a copy would double the memory.
     let bytes = changed.as_deref().unwrap_or_else(|| read.document.source().bytes());
     watch(Stage::Check);
-    let needs_model = !job.operation.is_empty() || !job.also.is_empty() || !job.validate.with.is_empty();
+    let wanted = [job.operation.is_empty(), job.also.is_empty(), job.pictures.is_empty()];
+    let needs_model = wanted.contains(&false) || !job.validate.with.is_empty();
     let after = if needs_model { Some(read_again(job, part, bytes, &result, report)?) } else { None };
     if let Some((_, model)) = &after {
         chord(job, model)?;
@@ -117,18 +118,13 @@ fn go(
     let staged = Staged::write(&part.output, bytes).map_err(PartError::Output)?;
     let mut sides = Vec::new();
     if let Some((document, model)) = &after {
-        let before = result.model.as_ref().unwrap_or(model);
-        let program = &stamp.preprocessor;
         let made = Made {
-            before: (&read.document, before),
+            before: (&read.document, result.model.as_ref().unwrap_or(model)),
             after: (document, model),
             held: result.held.groups(),
-            program,
+            program: &stamp.preprocessor,
         };
-        for (name, file) in side::staged(job, part, &made, chord(job, model)?)? {
-            report.side_files.push(name);
-            sides.push(file);
-        }
+        sides = side::staged(job, part, &made, chord(job, model)?, report)?;
         let judged = judge::judge(&job.validate, staged.path(), model, None)?;
         report.validators = judged.verdicts;
         report.losses.extend(

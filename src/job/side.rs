@@ -1,16 +1,14 @@
-//! Files beside the output: meshes for viewing, a picture of before and after, the proof sheet.
+//! Files beside the output: meshes for viewing, pictures of what changed, the proof sheet.
 
 use super::failure::PartError;
-use super::file::{Job, SideFile};
+use super::file::Job;
 use super::judge;
 use super::output::Staged;
 use super::plan::Part;
 use super::proof::{self, Held};
+use super::report::{DiagnosticReport, PartReport, PictureReport};
 use crate::document::Document;
-use crate::math::Vector3;
-use crate::mesh::Mesh;
 use crate::model::Model;
-use crate::picture::{PictureOptions, View, highlight_lines};
 
 /// What side files are made of: the part before and after, and what was held.
 pub struct Made<'a> {
@@ -24,7 +22,7 @@ pub struct Made<'a> {
     pub program: &'a str,
 }
 
-/// Writes the side files of a part beside their places; `chord` bounds their meshes.
+/// Writes the side files of a part beside their places, and names them in its report; `chord` bounds their meshes.
 ///
 /// # Errors
 /// [`PartError`]; nothing stays.
@@ -33,52 +31,42 @@ pub fn staged(
     part: &Part,
     made: &Made<'_>,
     chord: Option<f64>,
-) -> Result<Vec<(String, Staged)>, PartError> {
+    report: &mut PartReport,
+) -> Result<Vec<Staged>, PartError> {
     let mut staged = Vec::with_capacity(job.also.len());
     for &side in &job.also {
         let path = part.output.with_extension(side.extension());
         let bytes = match side.mesh() {
             Some(format) => judge::side_bytes(made.after.1, chord, format)?,
-            None if side == SideFile::Png => picture(made)?,
             None => sheet(part, made)?,
         };
-        let name = path.to_string_lossy().into_owned();
-        staged.push((name, Staged::write(&path, &bytes).map_err(PartError::Output)?));
+        staged.push(Staged::write(&path, &bytes).map_err(PartError::Output)?);
+        report.side_files.push(path.to_string_lossy().into_owned());
     }
+    staged.extend(pictures(job, part, made, report)?);
     Ok(staged)
 }
 
-/// Chord of a picture's meshes over the diagonal of the part: fine enough for bands to be smooth.
-const FINENESS: f64 = 1e-4;
-
-/// Highlight lines of the part before and after, seen along the shortest side of its box.
-fn picture(made: &Made<'_>) -> Result<Vec<u8>, PartError> {
-    let meshes = [made.before.1, made.after.1].map(|model| judge::whole_mesh(model, FINENESS));
-    let [before, after] = meshes;
-    let meshes = [before?, after?];
-    let views: Vec<View<'_>> = meshes.iter().map(|mesh| View { mesh }).collect();
-    highlight_lines(&views, &seen_flat(&meshes[0])).map_err(|error| PartError::Picture(error.to_string()))
-}
-
-/// A view from above the broad side of a part, with the lights above it and the longest side across.
-fn seen_flat(mesh: &Mesh) -> PictureOptions {
-    let sides = mesh
-        .extents()
-        .map_or([3.0, 2.0, 1.0], |box_| std::array::from_fn(|axis| box_.max[axis] - box_.min[axis]));
-    let mut axes = [0, 1, 2];
-    // Equal sides keep the order of the coordinates.
-    axes.sort_by(|&a, &b| f64::total_cmp(&sides[b], &sides[a]).then(a.cmp(&b)));
-    let unit = |axis: usize| Vector3::ith(axis, 1.0);
-    let (across, up) = (unit(axes[0]), unit(axes[1]));
-    // The eye on the side from which both axes run as on paper.
-    let above = across.cross(&up);
-    PictureOptions {
-        eye: above - up * 0.55,
-        up,
-        lights_above: above,
-        lights_along: up,
-        ..PictureOptions::default()
+/// Pictures of the faces that changed.
+fn pictures(
+    job: &Job,
+    part: &Part,
+    made: &Made<'_>,
+    report: &mut PartReport,
+) -> Result<Vec<Staged>, PartError> {
+    let drawn = super::pictures::draw(made.before.1, made.after.1, &job.pictures)?;
+    if drawn.is_empty() && !job.pictures.is_empty() {
+        let text = "no picture was drawn, since no face changed".to_owned();
+        report.losses.push(DiagnosticReport::warning("picture.no-face", text));
     }
+    let mut staged = Vec::new();
+    for picture in drawn {
+        let path = part.output.with_extension(format!("{}.png", picture.kind.as_str()));
+        staged.push(Staged::write(&path, &picture.png).map_err(PartError::Output)?);
+        let (path, full_colour) = (path.to_string_lossy().into_owned(), picture.full_colour);
+        report.pictures.push(PictureReport { path, kind: picture.kind, full_colour });
+    }
+    Ok(staged)
 }
 
 /// The proof sheet, once it is checked as anybody would.

@@ -213,12 +213,3 @@ fn a_corpus_part_is_proved() {
     let fixture = proved(std::fs::read(part).expect("a corpus file"), DOOR);
     assert_verdict(&fixture, true, "a corpus part");
 }
-
-#[test]
-fn a_picture_of_before_and_after_is_drawn_on_request() {
-    let job = DOOR.replace("[\"proof\"]", "[\"png\"]");
-    let fixture = proved(sample("door/door.step"), &job);
-    let png = std::fs::read(fixture.path("out.png")).expect("a picture");
-    assert!(png.starts_with(b"\x89PNG\r\n\x1a\n"));
-    assert_eq!(fixture.left(), ["in.step", "job.toml", "out.png", "out.step"]);
-}

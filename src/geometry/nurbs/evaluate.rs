@@ -191,6 +191,13 @@ impl NurbsSurface {
         quotients(&self.sums::<2, _>(bu, bv))
     }
 
+    /// As [`point`](Self::point), by bases that were computed before.
+    #[must_use]
+    pub fn point_by(&self, bu: &LocalBasis, bv: &LocalBasis) -> Point3<f64> {
+        let h = self.sums::<0, _>(bu, bv)[0];
+        Point3::new(h[0] / h[3], h[1] / h[3], h[2] / h[3])
+    }
+
     /// Unit normal `du × dv / |du × dv|`; `None` where the parametrisation is singular.
     #[must_use]
     pub fn normal(&self, u: f64, v: f64) -> Option<Vector3<f64>> {

@@ -1,9 +1,9 @@
 //! From a model and parameters to a change set: which element gets which motion.
 //!
-//! In order: [`target`] names loops and faces, [`flood`] finds what hangs on them, [`base`] lays out the faces that bear
-//! them, [`piece`] gives every feature its motion, cut at a [`wall`] where its ends must part, [`stretch`] runs the
-//! numeric core on the faces between, [`follow`] says which element follows which motion, [`clear`] looks whether they
-//! stay clear of each other, and [`assemble`] makes each element's [`image`] once, however many faces share it.
+//! In order: `target` names loops and faces, `flood` finds what hangs on them, `base` lays out the faces that bear
+//! them, `piece` gives every feature its motion, cut at a `wall` where its ends must part, `stretch` runs the
+//! numeric core on the faces between, `follow` says which element follows which motion, `clear` looks whether they
+//! stay clear of each other, and `assemble` makes each element's `image` once, however many faces share it.
 //!
 //! Faces outside the scope stay, and a face of the scope may not share an edge with them.
 //!
