@@ -13,7 +13,7 @@ use super::measures::read;
 use super::{python, root, support};
 
 /// Points of each piece of an edge.
-const POINTS: &str = "80";
+const POINTS: &str = "160";
 /// Relative difference that the limit of the polygons leaves.
 const AGREED: f64 = 1e-7;
 

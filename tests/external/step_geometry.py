@@ -128,6 +128,11 @@ def knots_of(multiplicities, values):
     return np.repeat(np.array(values, float), [int(m) for m in multiplicities])
 
 
+def quasi_uniform(degree, count):
+    """Knots 0, 1, 2 and so on, with full multiplicity at both ends (ISO 10303-42, `quasi_uniform_knots`)."""
+    return np.concatenate([np.zeros(degree), np.arange(count - degree + 1.0), np.full(degree, count - degree)])
+
+
 def basis(knots, degree, at):
     """Span, functions and their derivatives at many parameters, by the recurrence of Cox and de Boor."""
     count = len(knots) - degree - 1
@@ -259,6 +264,11 @@ def curve(file, name):
         rational = file.has(name, "RATIONAL_B_SPLINE_CURVE")
         weights = file.get(name, "RATIONAL_B_SPLINE_CURVE")[0] if rational else np.ones(len(points))
         return SplineCurve(Spline(int(degree), knots_of(multiplicities, values), weighted(points, weights)))
+    if keyword == "QUASI_UNIFORM_CURVE":
+        _, degree, points = file.parts(name)[0][1][:3]
+        points = np.array([file.point(p) for p in points])
+        knots = quasi_uniform(int(degree), len(points))
+        return SplineCurve(Spline(int(degree), knots, weighted(points, np.ones(len(points)))))
     raise Unable(f"curve {keyword}")
 
 
@@ -517,4 +527,9 @@ def surface(file, name, reach):
         rational = file.has(name, "RATIONAL_B_SPLINE_SURFACE")
         weights = file.get(name, "RATIONAL_B_SPLINE_SURFACE")[0] if rational else np.ones(net.shape[:2])
         return SplineSurface((int(p), int(q)), (knots_of(mu, ku), knots_of(mv, kv)), weighted(net, weights))
+    if keyword == "QUASI_UNIFORM_SURFACE":
+        p, q, rows = given[1:4]
+        net = np.array([[file.point(point) for point in row] for row in rows])
+        knots = quasi_uniform(int(p), net.shape[0]), quasi_uniform(int(q), net.shape[1])
+        return SplineSurface((int(p), int(q)), knots, weighted(net, np.ones(net.shape[:2])))
     raise Unable(f"surface {keyword}")
