@@ -20,6 +20,7 @@ pub mod transform;
 pub use bounded::{Composite, Segment, Trimmed};
 pub use curve::Curve;
 pub use curve2d::Curve2d;
+pub use evaluate_surface::Repetition;
 pub use nurbs::SurfaceDerivatives;
 pub use surface::{Patch, PatchGrid, Surface};
 pub use to_nurbs::{ParameterLine, ToNurbsError};

@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::de;
 use serde::{Deserialize, Serialize};
 
+pub use super::deform_file::Deform;
 pub use super::detail_file::DetailTransfer;
 pub use super::paste_file::FeaturePaste;
 pub use super::scale_file::ConstrainedScale;
@@ -158,7 +159,7 @@ pub struct ToleranceSettings {
     pub length: Option<LengthSetting>,
 }
 
-fn positive_length<'de, D: serde::Deserializer<'de>>(
+pub(super) fn positive_length<'de, D: serde::Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<LengthSetting>, D::Error> {
     let length = Option::<LengthSetting>::deserialize(deserializer)?;
@@ -261,6 +262,8 @@ pub enum ValidatorName {
 pub enum Operation {
     /// Scale a part, while chosen features keep their shape and size.
     ConstrainedScale(Box<ConstrainedScale>),
+    /// Pull lines on a face to given curves.
+    Deform(Box<Deform>),
     /// Carry the detail of one curve onto another.
     DetailTransfer(Box<DetailTransfer>),
     /// Carry a freeform feature from one face onto another.
@@ -275,6 +278,7 @@ impl Operation {
     pub fn kind(&self) -> &'static str {
         match self {
             Self::ConstrainedScale(_) => "constrained_scale",
+            Self::Deform(_) => "deform",
             Self::DetailTransfer(_) => "detail_transfer",
             Self::FeaturePaste(_) => "feature_paste",
             Self::Simplify(_) => "simplify",
@@ -286,7 +290,7 @@ impl Operation {
     pub fn growth(&self) -> f64 {
         match self {
             Self::ConstrainedScale(scale) => scale.factors.0.into_iter().fold(1.0, f64::max),
-            Self::FeaturePaste(_) | Self::DetailTransfer(_) | Self::Simplify(_) => 1.0,
+            Self::Deform(_) | Self::FeaturePaste(_) | Self::DetailTransfer(_) | Self::Simplify(_) => 1.0,
         }
     }
 }
@@ -295,6 +299,7 @@ impl Operation {
 #[serde(rename_all = "snake_case")]
 enum OperationKind {
     ConstrainedScale,
+    Deform,
     DetailTransfer,
     FeaturePaste,
     Simplify,
@@ -321,6 +326,11 @@ impl<'de> Deserialize<'de> for Operation {
                         let scale = ConstrainedScale::deserialize(rest)?;
                         scale.check().map_err(de::Error::custom)?;
                         Ok(Operation::ConstrainedScale(Box::new(scale)))
+                    }
+                    OperationKind::Deform => {
+                        let deform = Deform::deserialize(rest)?;
+                        deform.check().map_err(de::Error::custom)?;
+                        Ok(Operation::Deform(Box::new(deform)))
                     }
                     OperationKind::DetailTransfer => {
                         let transfer = DetailTransfer::deserialize(rest)?;

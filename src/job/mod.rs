@@ -5,6 +5,8 @@
 
 mod clock;
 pub mod contents;
+pub mod deform_file;
+mod deform_operate;
 pub mod detail_file;
 pub mod detail_library;
 mod detail_operate;

@@ -60,6 +60,14 @@ pub enum OperateError {
         /// The name.
         name: u64,
     },
+    /// A line of a deformation cannot be had.
+    #[error("{key}: {reason}")]
+    Line {
+        /// The key: `lines[0].from`.
+        key: String,
+        /// Why.
+        reason: String,
+    },
     /// A hold does not fit the part.
     #[error("hold: {0}")]
     Hold(String),
@@ -90,6 +98,7 @@ impl OperateError {
             Self::DetailFile { .. } => "job.detail-file",
             Self::FeatureFile { .. } => "job.feature-file",
             Self::NoCurve { .. } => "paste.no-curve",
+            Self::Line { .. } => "deform.no-line",
             Self::Hold(_) => "select.no-hold",
             Self::Operation(error) => error.code(),
             Self::NoFace => "select.no-face",
@@ -119,6 +128,10 @@ pub fn operate(model: &Model, source: &Source, operation: &Operation) -> Result<
             let (changes, measures) = (planned.change_set, &planned.measures);
             let operated = reported("constrained_scale", changes, measures, &planned.notes, source);
             Ok(Operated { held: planned.held, ..operated })
+        }
+        Operation::Deform(words) => {
+            let planned = super::deform_operate::planned(model, words)?;
+            Ok(reported("deform", planned.change_set, &planned.measures, &[], source))
         }
         Operation::DetailTransfer(words) => {
             let planned = super::detail_operate::planned(model, words)?;

@@ -92,8 +92,7 @@ fn near(nearest: &Option<String>) -> String {
 /// # Errors
 /// [`PlanError::NoMatch`].
 pub fn resolve(job: &mut Job, folder: &Path) -> Result<(), PlanError> {
-    for operation in &mut job.operation {
-        let Some(file) = file_of(operation) else { continue };
+    for file in job.operation.iter_mut().flat_map(files) {
         let path = folder.join(&*file);
         if !path.is_file() {
             let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
@@ -104,17 +103,18 @@ pub fn resolve(job: &mut Job, folder: &Path) -> Result<(), PlanError> {
     Ok(())
 }
 
-/// The file that an operation reads beside its part.
-fn file_of(operation: &mut Operation) -> Option<&mut String> {
+/// Files that an operation reads.
+fn files(operation: &mut Operation) -> Vec<&mut String> {
     match operation {
-        Operation::ConstrainedScale(_) | Operation::Simplify(_) => None,
+        Operation::ConstrainedScale(_) | Operation::Simplify(_) => Vec::new(),
+        Operation::Deform(deform) => deform.files().collect(),
         Operation::DetailTransfer(transfer) => {
             let source = &mut transfer.source;
-            source.file.as_mut().or(source.detail.as_mut())
+            source.file.as_mut().or(source.detail.as_mut()).into_iter().collect()
         }
         Operation::FeaturePaste(paste) => {
             let source = &mut paste.source;
-            source.file.as_mut().or(source.feature.as_mut())
+            source.file.as_mut().or(source.feature.as_mut()).into_iter().collect()
         }
     }
 }
@@ -123,7 +123,7 @@ fn file_of(operation: &mut Operation) -> Option<&mut String> {
 #[must_use]
 pub fn referenced(job: &Job) -> Vec<PathBuf> {
     let mut operations = job.operation.clone();
-    operations.iter_mut().filter_map(file_of).map(|file| PathBuf::from(&*file)).collect()
+    operations.iter_mut().flat_map(files).map(|file| PathBuf::from(&*file)).collect()
 }
 
 /// The parts of a job, sorted by path; `folder` is the job file's.
@@ -133,7 +133,10 @@ pub fn referenced(job: &Job) -> Vec<PathBuf> {
 pub fn parts(job: &Job, folder: &Path) -> Result<Vec<Part>, PlanError> {
     let holds = |operation: &Operation| match operation {
         Operation::ConstrainedScale(scale) => !scale.hold.is_empty(),
-        Operation::DetailTransfer(_) | Operation::FeaturePaste(_) | Operation::Simplify(_) => false,
+        Operation::Deform(_)
+        | Operation::DetailTransfer(_)
+        | Operation::FeaturePaste(_)
+        | Operation::Simplify(_) => false,
     };
     if job.also.contains(&SideFile::Proof) && !job.operation.iter().any(holds) {
         return Err(PlanError::NothingToProve);

@@ -3,6 +3,7 @@
 mod accepted;
 mod batch;
 mod cluster;
+mod deform;
 mod detail;
 mod diff;
 mod jobs;

@@ -158,7 +158,7 @@ fn run(golden: &Golden) -> Option<Done<'_>> {
 }
 
 /// Vertices, edges, bounds and all other surfaces are the same to the bit, and keep their names.
-fn nothing_else_changed(before: &Model, after: &Model, target: FaceId) {
+pub fn nothing_else_changed(before: &Model, after: &Model, target: FaceId) {
     let points = |m: &Model| m.brep.vertices.iter().map(|(_, v)| v.point).collect::<Vec<_>>();
     assert!(points(before) == points(after), "vertices");
     for edge in before.brep.edges.ids() {

@@ -4,7 +4,7 @@ use super::Quadrature;
 use super::adaptive::Accuracy;
 use super::moments::Sums;
 use crate::brep::inner_breaks;
-use crate::geometry::{Curve, Surface};
+use crate::geometry::{Curve, Repetition, Surface};
 use crate::math::quadrature::gauss_legendre;
 use crate::math::{Point3, Vector3};
 use std::f64::consts::FRAC_PI_2;
@@ -51,7 +51,8 @@ pub(super) struct Column<'a> {
     across: (Rule, Rule),
     pub(super) breaks: Vec<f64>,
     pub(super) period: Option<f64>,
-    wraps: bool,
+    /// Where the surface repeats itself; none for kinds that take any parameter.
+    repetition: Option<Repetition>,
     pieces: usize,
     /// Even parts that each piece between breaks is cut into.
     parts: usize,
@@ -84,7 +85,7 @@ impl<'a> Column<'a> {
         let coarse = if exact { Vec::new() } else { rule(points - 2) };
         let periods = surface.periods();
         let period = if along == Along::U { periods.0 } else { periods.1 };
-        let wraps = !matches!(
+        let endless = matches!(
             surface,
             Surface::Plane(_)
                 | Surface::Cylinder { .. }
@@ -92,12 +93,13 @@ impl<'a> Column<'a> {
                 | Surface::Sphere { .. }
                 | Surface::Torus { .. }
         );
+        let repetition = (!endless).then(|| surface.repetition());
         let breaks = breaks(surface, along);
         let points_across = points_of(surface, along.other()).min(quadrature.points);
         let across = (rule(points_across), rule(points_across.saturating_sub(2).max(1)));
         let fine = rule(points);
         let pieces = quadrature.pieces;
-        Self { surface, along, reference, fine, coarse, across, breaks, period, wraps, pieces, parts: 1 }
+        Self { surface, along, reference, fine, coarse, across, breaks, period, repetition, pieces, parts: 1 }
     }
 
     /// Cuts pieces into parts until the rules are at one over a rectangle, as far as some columns in it tell.
@@ -166,7 +168,7 @@ impl<'a> Column<'a> {
     /// Point, seen from the reference, and `du × dv`.
     fn element(&self, at: f64, x: f64) -> Sums {
         let (u, v) = if self.along == Along::V { (at, x) } else { (x, at) };
-        let (u, v) = if self.wraps { self.surface.wrapped(u, v) } else { (u, v) };
+        let (u, v) = self.repetition.map_or((u, v), |repetition| repetition.wrapped(u, v));
         let (point, n): (Point3<f64>, Vector3<f64>) = match self.surface {
             Surface::Nurbs(nurbs) => {
                 let (point, du, dv) = nurbs.first_derivatives(u, v);

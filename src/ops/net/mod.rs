@@ -7,10 +7,12 @@ pub mod acting;
 pub mod cells;
 pub mod grams;
 pub mod grid_system;
+pub mod knot_removal;
 pub mod layout;
 pub mod polygon;
 pub mod sampling;
 
 pub use cells::{CellGrid, Mask};
 pub use grid_system::GridSystem;
+pub use knot_removal::KnotRows;
 pub use polygon::{Contour, Domain, Polygon, PolygonFault};

@@ -26,6 +26,7 @@ mod scope;
 mod stretch;
 mod target;
 mod wall;
+mod winding;
 
 use crate::ops::net::layout;
 pub use crate::ops::net::layout::inner_loops;

@@ -169,7 +169,7 @@ fn group(
             Some((base, after)) => {
                 let contour = base.held.iter().find(|(k, _)| *k == number).map(|(_, contour)| contour);
                 let points = contour.map_or(&[][..], |contour| &contour.points);
-                motion_deviation(&base.carrier.surface, &after.surface, points, motion)
+                motion_deviation(&base.surface, &after.surface, points, motion)
             }
             None => curve_deviation(model, of.id, changes, motion)?,
         };
