@@ -11,6 +11,19 @@ pub enum Origin {
     DirectoryEntry(u32),
 }
 
+impl Origin {
+    /// Reads `#12` or `D5`; `None` for anything else.
+    #[must_use]
+    pub fn parse(text: &str) -> Option<Self> {
+        let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+        match (text.strip_prefix('#'), text.strip_prefix('D')) {
+            (Some(name), _) if digits(name) => name.parse().ok().map(Self::Instance),
+            (_, Some(number)) if digits(number) => number.parse().ok().map(Self::DirectoryEntry),
+            _ => None,
+        }
+    }
+}
+
 impl std::fmt::Display for Origin {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {

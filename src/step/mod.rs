@@ -12,6 +12,7 @@ pub mod lower;
 mod name_table;
 mod overflow;
 pub mod parameter;
+pub mod proof;
 pub mod reverse_index;
 pub mod schema;
 pub mod section;

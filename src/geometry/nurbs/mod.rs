@@ -13,6 +13,8 @@ mod extend;
 pub mod gram;
 pub mod interpolate;
 pub mod knot_vector;
+mod mended;
+mod open;
 pub mod project;
 mod refine;
 mod reshape;
