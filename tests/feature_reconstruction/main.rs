@@ -6,6 +6,7 @@ mod blends;
 mod cloud_files;
 mod lines;
 mod parts;
+mod secondaries;
 #[path = "../../samples/generate/scan/mod.rs"]
 mod scan;
 mod segmentation;

@@ -1,6 +1,7 @@
 //! Why a feature cannot be reconstructed. Each variant has a stable code.
 
 use crate::math::sparse::SingularSystem;
+use crate::ops::force_density::ForceDensityError;
 
 /// A feature could not be reconstructed; nothing was changed. Lengths are in file units.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -124,6 +125,43 @@ pub enum ReconstructionError {
         /// Number of the other.
         second: usize,
     },
+    /// Where points of the secondary lie over the primary is not defined.
+    #[error(
+        "{share:.0} % of the objective's points are so far from the primary, against its radius of curvature, that no point of \
+         it is clearly the nearest"
+    )]
+    HeightExceedsCurvature {
+        /// Per cent of the points.
+        share: f64,
+    },
+    /// No line through the feature has points enough.
+    #[error("no character line was found: none has {least} points of the objective beside it")]
+    NoCharacterLine {
+        /// Points needed beside a line.
+        least: usize,
+    },
+    /// Two lines cross more than once.
+    #[error("{} and {} cross {times} times; lines of a feature cross once", names[0], names[1])]
+    LinesCross {
+        /// The lines.
+        names: [String; 2],
+        /// How often.
+        times: usize,
+    },
+    /// The secondary surface does not come near enough to its points.
+    #[error(
+        "the secondary surface stays {:.4} from the objective's points in the mean and {:.4} from the farthest that count, \
+         where {:.4} and {:.4} are allowed", found[0], found[1], limits[0], limits[1]
+    )]
+    SecondaryDeviates {
+        /// Mean and upper distance.
+        found: [f64; 2],
+        /// What was allowed.
+        limits: [f64; 2],
+    },
+    /// The secondary surface cannot be deformed.
+    #[error(transparent)]
+    Deform(#[from] ForceDensityError),
     /// A system of equations has no solution.
     #[error(transparent)]
     Singular(#[from] SingularSystem),
@@ -147,6 +185,11 @@ impl ReconstructionError {
             Self::Trim { .. } => "reconstruct.trim",
             Self::RegionGoesOn { .. } => "reconstruct.region-goes-on",
             Self::FeaturesOverlap { .. } => "reconstruct.features-overlap",
+            Self::HeightExceedsCurvature { .. } => "reconstruct.height-exceeds-curvature",
+            Self::NoCharacterLine { .. } => "reconstruct.no-character-line",
+            Self::LinesCross { .. } => "reconstruct.lines-cross",
+            Self::SecondaryDeviates { .. } => "reconstruct.secondary-deviates",
+            Self::Deform(error) => error.code(),
             Self::Singular(_) => "reconstruct.singular",
         }
     }
