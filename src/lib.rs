@@ -18,6 +18,7 @@ pub mod job;
 pub mod math;
 pub mod mesh;
 pub mod model;
+pub mod number;
 pub mod ops;
 pub mod picture;
 pub mod source;

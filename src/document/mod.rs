@@ -194,7 +194,7 @@ impl Document {
     /// the side of yes.
     #[must_use]
     pub fn may_overflow(&self) -> bool {
-        step::may_overflow(self.source().bytes())
+        crate::number::may_overflow(self.source().bytes())
     }
 
     /// Line of a record, from 1; `None` when the file has no such record.

@@ -26,11 +26,11 @@ use std::collections::BTreeMap;
 use super::edit;
 use super::exchange_structure::{ExchangeStructure, InstanceName};
 use super::reverse_index::ReverseIndex;
-use super::write::{LineEnding, RecordWriter};
+use super::write::RecordWriter;
 use crate::brep::FaceId;
 use crate::exchange::{Edit, NameAllocator, Patch, PatchError};
 use crate::model::{ChangeSet, Model, Origin};
-use crate::source::Span;
+use crate::source::{LineEnding, Span};
 use request::Requests;
 
 /// Why a change set cannot be written into this file.
