@@ -14,6 +14,7 @@ pub mod diagnostic;
 pub mod document;
 pub mod exchange;
 pub mod geometry;
+pub mod iges;
 pub mod job;
 pub mod math;
 pub mod mesh;
