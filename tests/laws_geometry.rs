@@ -202,6 +202,38 @@ proptest! {
     }
 
     #[test]
+    fn pieces_spans_and_extensions_of_a_surface_keep_its_points(
+        s in surface(), a in 0.0..0.45_f64, b in 0.55..1.0_f64, n in 1_usize..9, e in 0.0..0.1_f64,
+    ) {
+        let ((u0, u1), (v0, v1)) = s.domain();
+        let at = |(low, high): (f64, f64), x: f64| low + (high - low) * x;
+        let sides = [(at((u0, u1), a), at((u0, u1), b)), (at((v0, v1), 1.0 - b), at((v0, v1), 1.0 - a))];
+        let piece = s.piece(sides[0], sides[1]).unwrap();
+        prop_assert_eq!(piece.domain(), (sides[0], sides[1]));
+        let cut = s.with_spans(n, n + 1).unwrap();
+        let longest = |k: &KnotVector| k.spans().map(|i| k.knots()[i + 1] - k.knots()[i]).fold(0.0, f64::max);
+        prop_assert!(longest(cut.knots_u()) <= (u1 - u0) / n as f64 * (1.0 + 1e-8));
+        prop_assert!(longest(cut.knots_v()) <= (v1 - v0) / (n + 1) as f64 * (1.0 + 1e-8));
+        // By a part of the end spans: further out, a polynomial of degree 6 with random coefficients is anything.
+        let span = |k: &KnotVector, u: f64| { let i = k.span(u); k.knots()[i + 1] - k.knots()[i] };
+        let by = [(u0, u1, s.knots_u()), (v0, v1, s.knots_v())]
+            .map(|(low, high, k)| (e * span(k, low), 0.5 * e * span(k, high)));
+        let Ok(larger) = s.extended(by[0], by[1]) else { return Ok(()) };
+        prop_assert!((larger.domain().0.0 - (u0 - by[0].0)).abs() < 1e-15 + 1e-15 * u0.abs());
+        for u in parameters((u0, u1)) {
+            for v in parameters((v0, v1)) {
+                let point = s.point(u, v);
+                prop_assert!((cut.point(u, v) - point).norm() < 1e-11);
+                prop_assert!((larger.point(u, v) - point).norm() < 1e-11);
+                let inside = |x: f64, (low, high): (f64, f64)| x > low && x < high;
+                if inside(u, sides[0]) && inside(v, sides[1]) {
+                    prop_assert!((piece.point(u, v) - point).norm() < 1e-11);
+                }
+            }
+        }
+    }
+
+    #[test]
     fn gram_matrices_agree_with_finer_quadrature(k in smooth_knots()) {
         let (x, w) = gauss_legendre(12);
         let n = k.n_basis();
@@ -265,6 +297,36 @@ fn panel() -> NurbsSurface {
         }
     }
     NurbsSurface::from_points(ku, kv, &points, None).unwrap()
+}
+
+/// A spline that is one polynomial goes on as that polynomial.
+#[test]
+fn an_extension_is_the_same_polynomial() {
+    let height = |x: f64, y: f64| 1.0 + x * x * x - 2.0 * x * y * y + 0.5 * y;
+    let ku = KnotVector::new(3, vec![0.0, 0.0, 0.0, 0.0, 0.4, 1.0, 1.0, 1.0, 1.0]).unwrap();
+    let kv = KnotVector::new(2, vec![0.0, 0.0, 0.0, 0.3, 0.3, 1.0, 1.0, 1.0]).unwrap();
+    let (u, v) = (GrevilleCollocation::new(&ku).unwrap(), GrevilleCollocation::new(&kv).unwrap());
+    let places = u.abscissae().iter().flat_map(|&x| v.abscissae().iter().map(move |&y| [x, y]));
+    let mut values: Vec<f64> = places.flat_map(|[x, y]| [x, y, height(x, y), 1.0]).collect();
+    interpolate_grid(&u, &v, &mut values, 4);
+    let surface = NurbsSurface::new(ku, kv, values.as_chunks::<4>().0.to_vec()).unwrap();
+    let larger = surface.extended((0.5, 0.25), (0.0, 2.0)).unwrap();
+    assert_eq!(larger.domain(), ((-0.5, 1.25), (0.0, 3.0)));
+    for i in 0..=20 {
+        for j in 0..=20 {
+            let (x, y) = (-0.5 + 1.75 * f64::from(i) / 20.0, 3.0 * f64::from(j) / 20.0);
+            let off = (larger.point(x, y) - Point3::new(x, y, height(x, y))).norm();
+            assert!(off < 1e-12, "{off} at ({x}, {y})");
+        }
+    }
+    assert!(surface.extended((-0.1, 0.0), (0.0, 0.0)).is_err());
+    assert!(surface.extended((f64::NAN, 0.0), (0.0, 0.0)).is_err());
+    // The weight 1 - 0.5 u vanishes at 2.
+    let line = KnotVector::clamped_uniform(1, 1, 0.0, 1.0).unwrap();
+    let net = vec![[0.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [0.5, 0.0, 0.0, 0.5], [0.5, 0.5, 0.0, 0.5]];
+    let rational = NurbsSurface::new(line.clone(), line, net).unwrap();
+    assert!(rational.extended((0.0, 0.9), (0.0, 0.0)).is_ok());
+    assert!(rational.extended((0.0, 1.1), (0.0, 0.0)).is_err());
 }
 
 #[test]
@@ -353,6 +415,7 @@ fn a_rational_sphere_octant_has_the_sphere_s_curvatures() {
             assert!((d.point.coords.norm() - 2.0).abs() < 1e-14);
             let (gauss, mean) = d.curvatures().unwrap();
             assert!((gauss - 0.25).abs() < 1e-11 && (mean.abs() - 0.5).abs() < 1e-11, "{gauss} {mean}");
+            assert!((d.greatest_curvature().unwrap() - 0.5).abs() < 1e-5);
         }
     }
     assert!(sphere.normal(0.5, 1.0).is_none_or(|n| n.iter().all(|c| c.is_finite())));

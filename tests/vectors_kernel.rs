@@ -1,5 +1,5 @@
-//! Reference vectors `k1` (knot insertion) and `k2` (degree elevation) of the scaling specification:
-//! numbers of another program, at the tolerances that come with them.
+//! Reference vectors `k1` (knot insertion) and `k2` (degree elevation) of the scaling specification and `r8` (extension,
+//! sub-rectangle) of the reconstruction's: numbers of another program, at the tolerances that come with them.
 
 #![expect(clippy::unwrap_used, reason = "builders of fixtures stop at what cannot be built")]
 
@@ -89,4 +89,26 @@ fn k2_degree_elevation() {
     let found = input.elevated(degree[0] as usize, degree[1] as usize).unwrap();
     assert_same(&found, &surface(&k2["output"]["surface"]), 1e-11);
     assert_probes(&found, &k2, 1e-11);
+}
+
+/// A bicubic surface as `r8` writes it.
+fn bicubic(value: &Value) -> NurbsSurface {
+    let knots = |name: &str| KnotVector::new(3, numbers(&value[name])).unwrap();
+    let rows = value["controls"].as_array().unwrap().iter().flat_map(|row| row.as_array().unwrap());
+    let points: Vec<Point3<f64>> = rows.map(numbers).map(|p| Point3::new(p[0], p[1], p[2])).collect();
+    NurbsSurface::from_points(knots("tu"), knots("tv"), &points, None).unwrap()
+}
+
+#[test]
+fn r8_extension_and_sub_rectangle() {
+    let r8 = vector("r8_surface_tools.json");
+    let surface = bicubic(&r8);
+    let tolerance = r8["tolerance"].as_f64().unwrap();
+    let size = surface.bounding_box().diagonal();
+    let e = numbers(&r8["extend"]["e"]);
+    let larger = surface.extended((e[0], e[1]), (e[2], e[3])).unwrap();
+    assert_same(&larger, &bicubic(&r8["extend"]), tolerance / size);
+    let rect = numbers(&r8["sub"]["rect"]);
+    let piece = surface.piece((rect[0], rect[1]), (rect[2], rect[3])).unwrap();
+    assert_same(&piece, &bicubic(&r8["sub"]), tolerance / size);
 }

@@ -17,7 +17,7 @@ macro_rules! ids {
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub struct $name(u32);
 
-        impl Id for $name {
+        impl $crate::brep::id::Id for $name {
             fn from_index(index: usize) -> Self {
                 Self(u32::try_from(index).expect("a file of 4 GiB has fewer than 2^32 elements"))
             }
@@ -27,6 +27,7 @@ macro_rules! ids {
         }
     )*};
 }
+pub(crate) use ids;
 
 ids! {
     /// A curve.

@@ -57,12 +57,10 @@ impl Figures {
         }
     }
 
-    /// Names of the counts in which two parts differ, with both counts.
-    #[must_use]
-    pub fn differing_counts(&self, other: &Self) -> Vec<(String, usize, usize)> {
-        let count = |figures: &Self, name: &str| figures.counts.get(name).copied().unwrap_or(0);
-        let differing = self.counts.keys().map(|name| (name.clone(), count(self, name), count(other, name)));
-        differing.filter(|(_, before, after)| before != after).collect()
+    /// Names of the counts, each with those of two parts.
+    pub fn counts_beside<'a>(&'a self, other: &'a Self) -> impl Iterator<Item = (&'a str, usize, usize)> {
+        let count = |name: &String| other.counts.get(name).copied().unwrap_or(0);
+        self.counts.iter().map(move |(name, &own)| (name.as_str(), own, count(name)))
     }
 }
 

@@ -168,7 +168,10 @@ fn changed(changes: &ChangeSet) -> std::collections::BTreeMap<String, usize> {
         ("pcurves", changes.pcurves.len()),
         ("points", changes.points.len()),
         ("free_curves", changes.free_curves.len()),
-        ("bounds", changes.bounds.values().map(Vec::len).sum()),
+        ("new_bounds", changes.new_bounds.values().map(Vec::len).sum()),
+        ("new_faces", changes.new_faces.len()),
+        ("removed_bounds", changes.removed_bounds.len()),
+        ("removed_faces", changes.removed_faces.len()),
     ];
     counts.into_iter().map(|(name, count)| (name.to_owned(), count)).collect()
 }

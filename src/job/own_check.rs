@@ -56,7 +56,8 @@ pub fn touched(model: &Model, changes: &ChangeSet) -> BTreeSet<Origin> {
         }
     }
     let mut faces: BTreeSet<FaceId> = changes.surfaces.keys().copied().collect();
-    faces.extend(changes.bounds.keys().copied());
+    faces.extend(changes.new_bounds.keys().chain(&changes.removed_faces));
+    faces.extend(changes.removed_bounds.iter().map(|&bound| brep.loops[bound].face));
     faces.extend(changes.curves.keys().flat_map(|&edge| &faces_of_edges[edge]));
     faces.extend(changes.pcurves.keys().map(|&coedge| brep.loops[brep.coedges[coedge].in_loop].face));
     faces.extend(changes.points.keys().flat_map(|&vertex| &uses[vertex]));

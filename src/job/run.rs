@@ -17,7 +17,7 @@ use super::part::Read;
 use super::plan::Part;
 use super::report::{DiagnosticReport, Edits, PartReport, Report, Status, WritePath};
 use crate::document::Stamp;
-use crate::model::{ChangeSet, Model, Origin};
+use crate::model::{Balance, ChangeSet, Model, Origin};
 
 /// Whether a run writes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -118,12 +118,14 @@ struct Changed {
     bytes: Option<Vec<u8>>,
     /// Faces that the operations change, with their neighbours.
     touched: BTreeSet<Origin>,
+    /// All faces of the input.
+    known: BTreeSet<Origin>,
     /// Facts that the input already violated on these.
     findings: Vec<OwnFinding>,
     /// Count of surfaces by kind that the result must have.
     surfaces: BTreeMap<String, usize>,
-    /// Edges of new bounds, each with a vertex of its own.
-    edges: usize,
+    /// By how much the counts of the result must differ.
+    balance: Balance,
 }
 
 fn changed_bytes(
@@ -146,7 +148,7 @@ fn changed_bytes(
     chord(job, &model)?;
     report.before = Some(Figures::of(&model));
     let mut surfaces = Figures::of(&model).surfaces;
-    let mut edges = 0;
+    let mut balance = Balance::default();
     let mut bytes: Option<Vec<u8>> = None;
     let mut faces: BTreeSet<Origin> = BTreeSet::new();
     for operation in &job.operation {
@@ -164,7 +166,7 @@ fn changed_bytes(
         if !patch.is_empty() {
             count_kinds(&mut surfaces, model, &changes);
             faces.extend(touched(model, &changes));
-            edges += changes.bounds.values().flatten().map(|bound| bound.edges.len()).sum::<usize>();
+            balance.add(Balance::of(model, &changes));
             bytes = Some(patch.apply(document.source().bytes()));
         }
     }
@@ -175,7 +177,8 @@ fn changed_bytes(
     let stale = read.document.validation_properties();
     report.losses.extend(stale.iter().map(|entity| stale_property(entity)));
     let findings = findings_of_faces(&read.document, &model, &faces, 1.0);
-    Ok(Changed { bytes, touched: faces, findings, surfaces, edges })
+    let known = model.origins.faces.iter().map(|(_, origin)| *origin).collect();
+    Ok(Changed { bytes, touched: faces, known, findings, surfaces, balance })
 }
 
 /// What an operation has made, as the next one finds it.
@@ -189,19 +192,13 @@ fn read_between(bytes: &[u8], part: &Part) -> Result<(Read, Model), PartError> {
 
 /// Counts of surfaces by kind, as a change set will leave them.
 fn count_kinds(surfaces: &mut BTreeMap<String, usize>, model: &Model, changes: &ChangeSet) {
-    for (&face, new) in &changes.surfaces {
-        let (old, new) = (super::measure::kind(model.brep.surface_of(face)), new.kind());
-        if old == new {
-            continue;
-        }
-        *surfaces.entry(new.to_owned()).or_insert(0) += 1;
-        if let Some(count) = surfaces.get_mut(&old) {
-            *count -= 1;
-            if *count == 0 {
-                surfaces.remove(&old);
-            }
-        }
+    let new = changes.surfaces.values().chain(changes.new_faces.iter().map(|face| &face.surface));
+    new.for_each(|new| *surfaces.entry(new.kind().to_owned()).or_insert(0) += 1);
+    for &face in changes.surfaces.keys().chain(&changes.removed_faces) {
+        let old = super::measure::kind(model.brep.surface_of(face));
+        surfaces.entry(old).and_modify(|count| *count = count.saturating_sub(1));
     }
+    surfaces.retain(|_, count| *count > 0);
 }
 
 /// Reads the result as anybody else would, and compares it with the input.
@@ -218,12 +215,10 @@ fn read_again(
     let after = Figures::of(&model);
     let mut findings = Vec::new();
     if let Some(before) = &report.before {
-        for (name, was, is) in before.differing_counts(&after) {
-            let more = if matches!(name.as_str(), "edges" | "vertices") { wanted.edges } else { 0 };
-            if is == was + more {
-                continue;
+        for (name, was, is) in before.counts_beside(&after) {
+            if was.checked_add_signed(wanted.balance.count(name)) != Some(is) {
+                findings.push(format!("{name}: {was} before, {is} after"));
             }
-            findings.push(format!("{name}: {was} before, {is} after"));
         }
         let surfaces = if wanted.bytes.is_some() { &wanted.surfaces } else { &before.surfaces };
         if *surfaces != after.surfaces {
@@ -239,7 +234,10 @@ fn read_again(
     if report.write_path == Some(WritePath::Patched) {
         // Of the operations, not of the part's box: a part of an assembly may grow while the box stays.
         let growth = job.operation.iter().map(Operation::growth).product();
-        let own = findings_of_faces(&read.document, &model, &wanted.touched, growth);
+        let new = model.origins.faces.iter().map(|(_, origin)| *origin);
+        let mut faces = wanted.touched.clone();
+        faces.extend(new.filter(|origin| !wanted.known.contains(origin)));
+        let own = findings_of_faces(&read.document, &model, &faces, growth);
         let new = new_findings(&wanted.findings, &own, growth).filter(|finding| finding.fails_a_change);
         findings.extend(new.map(ToString::to_string));
         report.findings = own;

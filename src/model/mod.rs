@@ -6,6 +6,7 @@
 
 pub mod annotation;
 pub mod assembly;
+pub mod balance;
 pub mod change_set;
 pub mod inventory;
 pub mod origin;
@@ -14,6 +15,7 @@ pub use annotation::{Annotation, AnnotationKind, Element, Measure};
 pub use assembly::{
     Instances, Node, Occurrence, Override, OverrideTarget, PlacedBody, PlacedShape, Product, instance_counts,
 };
+pub use balance::Balance;
 pub use change_set::ChangeSet;
 pub use inventory::Inventory;
 pub use origin::{Origin, Origins};

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test when it cannot go on")]
 
+mod certified;
 mod errors;
 mod files;
 mod invariants;

@@ -26,7 +26,8 @@ fn elevate_rows(
         for group in under.chunk_by(|a, b| a == b) {
             arguments[..omitted].copy_from_slice(&under[..omitted]);
             arguments[omitted..].copy_from_slice(&under[omitted + 1..]);
-            blossom(knots, rows, width, span, &arguments, &mut pyramid);
+            let active = &rows[(span - p) * width..(span + 1) * width];
+            blossom(knots, active, width, span, &arguments, &mut pyramid);
             let share = group.len() as f64 / (p + 1) as f64;
             for (sum, value) in target.iter_mut().zip(&pyramid[p * width..]) {
                 *sum += share * value;
@@ -64,11 +65,19 @@ fn span_under(knots: &KnotVector, before: f64, under: &[f64]) -> usize {
 /// Spans whose lengths differ by less than this factor count as equal: then the middle one is taken.
 const EQUAL_SPANS: f64 = 1.0 + 1e-6;
 
-/// The polar form of a span's polynomial at `p` arguments, into the last row of `pyramid` (de Boor).
-fn blossom(knots: &KnotVector, rows: &[f64], width: usize, span: usize, at: &[f64], pyramid: &mut [f64]) {
+/// The polar form of a span's polynomial at `p` arguments, into the last row of `pyramid` (de Boor). `active` are the
+/// `p + 1` rows that act on the span.
+pub(super) fn blossom(
+    knots: &KnotVector,
+    active: &[f64],
+    width: usize,
+    span: usize,
+    at: &[f64],
+    pyramid: &mut [f64],
+) {
     let p = knots.degree();
     let all = knots.knots();
-    pyramid.copy_from_slice(&rows[(span - p) * width..(span + 1) * width]);
+    pyramid.copy_from_slice(active);
     for (r, &x) in (1..=p).zip(at) {
         for i in (r..=p).rev() {
             let (low, high) = (all[span - p + i], all[span + 1 + i - r]);

@@ -47,6 +47,13 @@ impl SurfaceDerivatives {
         let det = e * g - f * f;
         (det > 0.0).then(|| ((l * k - m * m) / det, (e * k - 2.0 * f * m + g * l) / (2.0 * det)))
     }
+
+    /// The greater absolute value of the two principal curvatures; `None` where the parametrisation is singular.
+    #[must_use]
+    pub fn greatest_curvature(&self) -> Option<f64> {
+        let (gaussian, mean) = self.curvatures()?;
+        Some(mean.abs() + (mean * mean - gaussian).max(0.0).sqrt())
+    }
 }
 
 impl<const H: usize> NurbsCurve<H> {

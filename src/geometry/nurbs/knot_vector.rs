@@ -73,6 +73,9 @@ pub enum KnotVectorError {
 /// Knots closer than this part of the whole range count as one.
 pub const COINCIDENT: f64 = 1e-10;
 
+/// Part of a span by which it may be longer than asked before it is cut once more.
+const ROUNDED: f64 = 1e-9;
+
 impl KnotVector {
     /// Highest degree accepted: above it, double precision loses the curve.
     pub const MAX_DEGREE: usize = 25;
@@ -239,6 +242,34 @@ impl KnotVector {
     #[must_use]
     pub fn multiplicity(&self, u: f64) -> usize {
         self.knots.partition_point(|&k| k <= u) - self.knots.partition_point(|&k| k < u)
+    }
+
+    /// The knot of the domain within [`COINCIDENT`] of the range from `u`, or else `u` itself: a knot a rounding error
+    /// beside another would make a span of no length.
+    #[must_use]
+    pub fn snapped(&self, u: f64) -> f64 {
+        let (start, end) = self.domain();
+        let near = |k: &&f64| (*k - u).abs() <= COINCIDENT * (end - start);
+        self.knots[self.degree..=self.n_basis()].iter().find(near).copied().unwrap_or(u)
+    }
+
+    /// Knots that cut each span longer than `1 / n` of the domain into equal parts at most that long.
+    ///
+    /// # Errors
+    /// [`KnotVectorError::EmptyDomain`] for no part.
+    pub fn cuts(&self, n: usize) -> Result<Vec<f64>, KnotVectorError> {
+        if n == 0 {
+            return Err(KnotVectorError::EmptyDomain);
+        }
+        let (start, end) = self.domain();
+        let longest = (end - start) / n as f64;
+        let mut cuts = Vec::new();
+        for k in self.spans() {
+            let (low, high) = (self.knots[k], self.knots[k + 1]);
+            let parts = ((high - low) / longest - ROUNDED).ceil().max(1.0) as usize;
+            cuts.extend((1..parts).map(|i| low + (high - low) * (i as f64 / parts as f64)));
+        }
+        Ok(cuts)
     }
 
     /// With further knots, in any order, each within the domain.

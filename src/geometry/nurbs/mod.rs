@@ -4,9 +4,12 @@
 //! homogeneous points `(w x, w y, …, w)`.
 
 pub mod basis;
+mod bezier;
 pub mod curve;
 mod degree;
+pub mod deviation;
 pub mod evaluate;
+mod extend;
 pub mod gram;
 pub mod interpolate;
 pub mod knot_vector;
@@ -17,7 +20,9 @@ pub mod surface;
 
 pub use basis::LocalBasis;
 pub use curve::{NurbsCurve, NurbsCurve2, NurbsCurve3};
+pub use deviation::{Accuracy, Deviation, deviation, deviation_at_equal_parameters};
 pub use evaluate::SurfaceDerivatives;
+pub use extend::ExtensionError;
 pub use gram::{gram, gram_band};
 pub use interpolate::{GrevilleCollocation, interpolate_grid};
 pub use knot_vector::{KnotVector, KnotVectorError};

@@ -1,4 +1,4 @@
-//! Knot insertion (Boehm), and clamping by it. Geometry does not change.
+//! Knot insertion (Boehm), and clamping and pieces by it. Geometry does not change.
 //!
 //! Works on flat rows: a curve is a list of rows of `H` numbers, a surface along `u` a list of rows of
 //! `4 nv` numbers, so that curves and both directions of a surface share the algorithm.
@@ -66,6 +66,32 @@ fn clamp_rows(knots: &KnotVector, rows: &[f64], width: usize) -> (KnotVector, Ve
     (clamped, rows[first * width..last * width].to_vec())
 }
 
+/// Clamped knots and rows of the same geometry over a part of the domain.
+fn piece_rows(
+    knots: &KnotVector,
+    rows: &[f64],
+    width: usize,
+    (start, end): (f64, f64),
+) -> Result<(KnotVector, Vec<f64>), KnotVectorError> {
+    let (start, end) = (knots.snapped(start), knots.snapped(end));
+    if start.is_nan() || end.is_nan() || start >= end {
+        return Err(KnotVectorError::EmptyDomain);
+    }
+    let p = knots.degree();
+    let lacking = |x: f64| p.saturating_sub(knots.multiplicity(x));
+    let mut more = vec![start; lacking(start)];
+    more.extend(std::iter::repeat_n(end, lacking(end)));
+    let refined = knots.with_inserted(&more)?;
+    let rows = insert_rows(knots, rows, width, &more);
+    let all = refined.knots();
+    let first = all.partition_point(|&k| k <= start) - 1 - p;
+    let last = all.partition_point(|&k| k < end);
+    let mut cut = vec![start; p + 1];
+    cut.extend_from_slice(&all[first + p + 1..last]);
+    cut.extend(std::iter::repeat_n(end, p + 1));
+    Ok((KnotVector::new(p, cut)?, rows[first * width..last * width].to_vec()))
+}
+
 /// Flat numbers back to points.
 pub(super) fn to_points<const H: usize>(flat: &[f64]) -> Vec<[f64; H]> {
     flat.as_chunks::<H>().0.to_vec()
@@ -101,26 +127,13 @@ impl<const H: usize> NurbsCurve<H> {
         Self::from_valid(knots, to_points(&rows))
     }
 
-    /// The piece of the curve over `[start, end]`, clamped.
+    /// The piece of the curve over `[start, end]`, clamped. An end within 1e-10 of the range from a knot is that knot.
     ///
     /// # Errors
     /// As [`KnotVector::with_inserted`]; [`KnotVectorError::EmptyDomain`] when `start >= end`.
     pub fn piece(&self, start: f64, end: f64) -> Result<Self, KnotVectorError> {
-        if start.is_nan() || end.is_nan() || start >= end {
-            return Err(KnotVectorError::EmptyDomain);
-        }
-        let p = self.knots().degree();
-        let lacking = |x: f64| p.saturating_sub(self.knots().multiplicity(x));
-        let mut more = vec![start; lacking(start)];
-        more.extend(std::iter::repeat_n(end, lacking(end)));
-        let refined = self.refined(&more)?;
-        let all = refined.knots().knots();
-        let first = all.partition_point(|&k| k <= start) - 1 - p;
-        let last = all.partition_point(|&k| k < end);
-        let mut knots = vec![start; p + 1];
-        knots.extend_from_slice(&all[first + p + 1..last]);
-        knots.extend(std::iter::repeat_n(end, p + 1));
-        Ok(Self::from_valid(KnotVector::new(p, knots)?, refined.points()[first..last].to_vec()))
+        let (knots, rows) = piece_rows(self.knots(), self.points().as_flattened(), H, (start, end))?;
+        Ok(Self::from_valid(knots, to_points(&rows)))
     }
 }
 
@@ -142,6 +155,29 @@ impl NurbsSurface {
     /// See [`KnotVector::with_inserted`].
     pub fn refined_v(&self, more: &[f64]) -> Result<Self, KnotVectorError> {
         Ok(self.swapped().refined_u(more)?.swapped())
+    }
+
+    /// The part of the surface over a rectangle of parameters, clamped: the same points at the same parameters. A side
+    /// within 1e-10 of the range from a knot is that knot.
+    ///
+    /// # Errors
+    /// As [`KnotVector::with_inserted`]; [`KnotVectorError::EmptyDomain`] for a rectangle without area.
+    pub fn piece(&self, u: (f64, f64), v: (f64, f64)) -> Result<Self, KnotVectorError> {
+        Ok(self.piece_u(u)?.swapped().piece_u(v)?.swapped())
+    }
+
+    fn piece_u(&self, u: (f64, f64)) -> Result<Self, KnotVectorError> {
+        let width = 4 * self.shape().1;
+        let (knots, rows) = piece_rows(self.knots_u(), self.net().as_flattened(), width, u)?;
+        Ok(Self::from_valid(knots, self.knots_v().clone(), to_points(&rows)))
+    }
+
+    /// The same surface with no span longer than `1 / n` of the domain: each longer one is cut into equal parts.
+    ///
+    /// # Errors
+    /// [`KnotVectorError::EmptyDomain`] for a count of 0; others when spans are too short to be cut.
+    pub fn with_spans(&self, n_u: usize, n_v: usize) -> Result<Self, KnotVectorError> {
+        self.refined_u(&self.knots_u().cuts(n_u)?)?.refined_v(&self.knots_v().cuts(n_v)?)
     }
 
     /// The same surface with clamped knots in both directions.

@@ -123,6 +123,20 @@ pub enum ScaleError {
         /// Where, in the plainly scaled part.
         near: Point3<f64>,
     },
+    /// Two skins that share a feature lose the material between them.
+    #[error(
+        "faces {} and {} come too close near ({:.4}, {:.4}, {:.4}): what is between them is {ratio:.3} of the lesser \
+         of the thickness before and that of the plain scaling, at least 0.8 is needed",
+        faces[0], faces[1], near.x, near.y, near.z
+    )]
+    SkinsTooClose {
+        /// The faces.
+        faces: [String; 2],
+        /// Thickness now over the lesser expected one; negative where they cross.
+        ratio: f64,
+        /// Where, on the first face as it would be.
+        near: Point3<f64>,
+    },
     /// The derivatives of the surface are parallel where a direction is needed.
     #[error("face {face}: the parametrisation is singular at ({:.6}, {:.6})", at[0], at[1])]
     SingularParametrisation {
@@ -157,6 +171,7 @@ impl ScaleError {
             Self::FeatureTooCloseToBoundary { .. } => "scale.feature-too-close-to-boundary",
             Self::NetTooLarge { .. } => "scale.net-too-large",
             Self::FoldOver { .. } => "scale.fold-over",
+            Self::SkinsTooClose { .. } => "scale.skins-too-close",
             Self::SingularParametrisation { .. } => "scale.singular-parametrisation",
             Self::SingularSystem { .. } => "scale.singular-system",
         }

@@ -12,6 +12,7 @@ use super::motion::{LoopFrame, Motion, degenerate};
 use super::prepare::prepare;
 use super::refine::Refined;
 use super::scaling::{Hold, Scaling};
+use super::skins;
 use super::solve::choose_amounts;
 use super::stage::{Residual, finish, held_sets, stage};
 use super::task::{Contour, FaceTask, Group, HeldLoop, Scaled, ScaledFace};
@@ -49,19 +50,31 @@ pub fn scale_faces(tasks: &[FaceTask<'_>], scaling: &Scaling) -> Result<Scaled, 
         return unchanged(tasks, &faces, &grouping, scaling, &plain);
     }
     let mut least = vec![0; faces.len()];
+    let mut parted = false;
     loop {
         let refined = refine_together(&faces, &mut grouping, &mut least, scaling)?;
         let motions = motions(&faces, &grouping, scaling, &plain)?;
-        let solved = solve(tasks, &faces, refined, &grouping, motions, scaling, &plain)?;
-        let Some(folded) = solved.faces.iter().position(|f| f.compression.is_fold()) else {
-            return Ok(solved);
-        };
+        let mut solved = solve(tasks, &faces, refined, &grouping, motions, scaling, &plain)?;
         // One more level gives the stretched part more room, as long as the limit allows.
-        let Compression { ratio, near } = solved.faces[folded].compression;
-        if solved.faces[folded].level < least[folded] {
-            return Err(ScaleError::FoldOver { face: faces[folded].name.clone(), ratio, near });
+        if let Some(folded) = solved.faces.iter().position(|f| f.compression.is_fold()) {
+            let Compression { ratio, near } = solved.faces[folded].compression;
+            if solved.faces[folded].level < least[folded] {
+                return Err(ScaleError::FoldOver { face: faces[folded].name.clone(), ratio, near });
+            }
+            least[folded] = solved.faces[folded].level + 1;
+            continue;
         }
-        least[folded] = solved.faces[folded].level + 1;
+        solved.skins = skins::pairs(&faces, &solved);
+        let Some(close) = solved.skins.iter().find(|pair| pair.is_too_close()) else { return Ok(solved) };
+        if parted {
+            let names = close.faces.map(|face| faces[face].name.clone());
+            let (ratio, near) = (close.least_ratio, close.near);
+            return Err(ScaleError::SkinsTooClose { faces: names, ratio, near });
+        }
+        parted = true;
+        for face in close.faces {
+            least[face] = solved.faces[face].level + 1;
+        }
     }
 }
 
@@ -112,14 +125,14 @@ fn solve(
     let mut residual = Residual::new(&motions);
     let mut done = Vec::with_capacity(stages.len());
     for ((stage, face), task) in stages.into_iter().zip(faces).zip(tasks) {
-        let points_before = task.surface.net().len();
+        let image = task.surface.transformed(plain);
         done.push(match stage {
-            Some(stage) => finish(stage, &face.name, points_before, &motions, &mut residual)?,
-            None => ScaledFace::whole(task.surface.transformed(plain)),
+            Some(stage) => finish(stage, &face.name, image, &motions, &mut residual)?,
+            None => ScaledFace::whole(image),
         });
     }
     let residual = residual.greatest(&motions);
-    Ok(Scaled { faces: done, groups: group_list(grouping, motions), residual })
+    Ok(Scaled { faces: done, groups: group_list(grouping, motions), skins: Vec::new(), residual })
 }
 
 fn group_list(grouping: &Grouping, motions: Vec<Motion>) -> Vec<Group> {
@@ -146,5 +159,6 @@ fn unchanged(
 ) -> Result<Scaled, ScaleError> {
     let motions = motions(faces, grouping, scaling, plain)?;
     let done = tasks.iter().map(|task| ScaledFace::whole(task.surface.clone()));
-    Ok(Scaled { faces: done.collect(), groups: group_list(grouping, motions), residual: 0.0 })
+    let groups = group_list(grouping, motions);
+    Ok(Scaled { faces: done.collect(), groups, skins: Vec::new(), residual: 0.0 })
 }

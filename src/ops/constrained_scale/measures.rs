@@ -6,7 +6,7 @@
 use super::motion::Motion;
 use super::sampling::{closest, steps};
 use super::task::ScaledFace;
-use crate::geometry::nurbs::NurbsSurface;
+use crate::geometry::nurbs::{Accuracy, Deviation, NurbsSurface, deviation};
 use crate::math::{Point3, Vector3, rigid_fit};
 
 /// Comparison of a face with the plainly scaled surface outside the held cells, sampled on a grid.
@@ -57,6 +57,30 @@ pub fn quality(face: &ScaledFace, samples: usize) -> Quality {
         }
     }
     sums.quality()
+}
+
+/// Proved bounds of how far a face is from the plainly scaled surface; see [`deviation`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Certified {
+    /// Over the cells in which some control point that acts is not held; none when there are no such cells.
+    pub outside: Option<Deviation>,
+    /// Over the cells in which all are held: there the face keeps its shape, and the plain scaling does not.
+    pub held: Option<Deviation>,
+}
+
+/// Bounds the deviation of a face.
+#[must_use]
+pub fn certified(face: &ScaledFace) -> Certified {
+    let (knots_u, knots_v) = (face.surface.knots_u(), face.surface.knots_v());
+    let (p, q) = (knots_u.degree(), knots_v.degree());
+    let (spans_u, spans_v): (Vec<usize>, Vec<usize>) = (knots_u.spans().collect(), knots_v.spans().collect());
+    let held = |[i, j]: [usize; 2]| {
+        let (k, l) = (spans_u[i], spans_v[j]);
+        (k - p..=k).all(|row| (l - q..=l).all(|column| face.held.contains(row, column)))
+    };
+    let bound =
+        |part: &dyn Fn([usize; 2]) -> bool| deviation(&face.surface, &face.image, &Accuracy::default(), part);
+    Certified { outside: bound(&|cell| !held(cell)), held: bound(&held) }
 }
 
 /// How far a held loop is from where its group's motion takes it, and from being a rigid copy of itself.

@@ -26,6 +26,7 @@ pub mod plan;
 mod prepare;
 pub mod refine;
 pub mod scaling;
+pub mod skins;
 pub mod slide;
 pub mod solve;
 mod stage;

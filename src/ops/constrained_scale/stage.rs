@@ -126,7 +126,7 @@ fn moved(point: &[f64; 4], motion: &Motion) -> [f64; 4] {
 pub(super) fn finish(
     stage: Stage,
     name: &str,
-    points_before: usize,
+    image: NurbsSurface,
     motions: &[Motion],
     residual: &mut Residual,
 ) -> Result<ScaledFace, ScaleError> {
@@ -153,7 +153,8 @@ pub(super) fn finish(
     let compression = strongest_compression(&surface, &stage.plain);
     let free_points = stage.system.free().len();
     let Stage { plain, level, .. } = stage;
-    Ok(ScaledFace { surface, plain, held, points_before, free_points, level, compression })
+    let points_before = image.net().len();
+    Ok(ScaledFace { surface, plain, image, held, points_before, free_points, level, compression })
 }
 
 /// Collects how far the solution is from stationary.

@@ -5,6 +5,7 @@ use super::fold::Compression;
 use super::motion::Motion;
 pub use super::polygon::Contour;
 use super::scaling::Hold;
+use super::skins::SkinPair;
 use crate::geometry::nurbs::NurbsSurface;
 use crate::math::Point3;
 
@@ -41,6 +42,8 @@ pub struct ScaledFace {
     pub surface: NurbsSurface,
     /// The plainly scaled surface over the same knots.
     pub plain: NurbsSurface,
+    /// The plainly scaled surface over the knots that it came with: what a deviation is measured from.
+    pub image: NurbsSurface,
     /// Control points that moved rigidly.
     pub held: Mask,
     /// Control points before refinement.
@@ -71,6 +74,8 @@ pub struct Scaled {
     pub faces: Vec<ScaledFace>,
     /// Groups in the order of their first loops.
     pub groups: Vec<Group>,
+    /// Faces that share a group and lie opposite to each other, with the material between them.
+    pub skins: Vec<SkinPair>,
     /// Greatest relative residual of the stationarity conditions: of the free points, and of the groups' motions.
     pub residual: f64,
 }
@@ -81,6 +86,7 @@ impl ScaledFace {
         let (rows, columns) = surface.shape();
         Self {
             plain: surface.clone(),
+            image: surface.clone(),
             surface,
             held: Mask::empty(rows, columns),
             points_before: rows * columns,

@@ -21,9 +21,24 @@ impl<'a> Lowering<'a> {
         EntityView::of(self.structure.instance(name)?)
     }
 
-    fn attribute(&self, name: InstanceName, attribute: &'static str) -> Result<Parameter<'a>, LowerError> {
+    pub(super) fn attribute(
+        &self,
+        name: InstanceName,
+        attribute: &'static str,
+    ) -> Result<Parameter<'a>, LowerError> {
         let found = self.view(name).and_then(|view| view.get(attribute));
         found.ok_or(LowerError::Attribute { name, attribute })
+    }
+
+    /// A list, with the position of its record.
+    pub(super) fn list(
+        &self,
+        name: InstanceName,
+        attribute: &'static str,
+    ) -> Result<(u32, Parameter<'a>), LowerError> {
+        let list = self.attribute(name, attribute)?;
+        let position = self.structure.position(name).ok_or(LowerError::Unresolved { name })?;
+        list.as_list().map(|_| (position, list)).ok_or(LowerError::Attribute { name, attribute })
     }
 
     /// Where the value of an attribute stands.
@@ -204,13 +219,15 @@ impl<'a> Lowering<'a> {
     /// exports, or that nobody used before, stays.
     pub(super) fn remove_orphans(&mut self) {
         let exported = anchored(self.structure);
-        let mut candidates: BTreeSet<InstanceName> = self.lost.keys().copied().collect();
+        let mut candidates: BTreeSet<InstanceName> = self.lost.keys().chain(&self.retired).copied().collect();
         let mut removed = BTreeSet::new();
         while let Some(name) = candidates.pop_first() {
             let Some(instance) = self.structure.instance(name) else { continue };
             let users: Vec<u32> = self.users.users(self.structure, name).to_vec();
             let n_users: usize = users.into_iter().map(|user| self.n_references(user, name)).sum();
-            let orphan = self.n_lost(name) >= n_users && !exported.contains(&instance.position());
+            let orphan =
+                self.n_lost(name) >= n_users && self.gained.get(&name).is_none_or(|&count| count == 0);
+            let orphan = self.retired.contains(&name) || orphan && !exported.contains(&instance.position());
             if !orphan || !removed.insert(instance.position()) {
                 continue;
             }
@@ -219,6 +236,7 @@ impl<'a> Lowering<'a> {
                 candidates.insert(target);
             }
         }
+        self.edits.extend(std::mem::take(&mut self.lists).finish(&removed, self.ending));
         self.edits.extend(edit::remove(self.structure, removed));
     }
 
@@ -241,7 +259,7 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    fn raw(&self, name: InstanceName, attribute: &'static str, missing: &str) -> String {
+    pub(super) fn raw(&self, name: InstanceName, attribute: &'static str, missing: &str) -> String {
         let span = self.attribute_span(name, attribute).ok();
         let text = span.and_then(|span| std::str::from_utf8(self.structure.source().slice(span)).ok());
         text.unwrap_or(missing).to_owned()

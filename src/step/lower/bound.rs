@@ -1,89 +1,73 @@
-//! New bounds of faces: holes with vertices, edges and curves in parameters of their own.
+//! Bounds that faces of the model get and lose.
 
 use super::super::exchange_structure::InstanceName;
-use super::compose::{self, Body, Inherited, Value};
+use super::compose::{Body, Value, verbatim};
 use super::{LowerError, Lowering};
-use crate::brep::FaceId;
+use crate::brep::{Arena, FaceId};
 use crate::model::ChangeSet;
-use crate::model::change_set::{NewBound, NewEdge};
-use crate::source::Span;
-
-fn verbatim(text: &str) -> Value {
-    Value::Verbatim(text.to_owned())
-}
+use crate::model::change_set::{EdgeRef, NewBound, NewCoedge, NewEdgeId};
 
 impl Lowering<'_> {
-    /// Appends the new bounds and adds them to their faces. The surfaces must be decided already.
-    pub(super) fn bounds(&mut self, changes: &ChangeSet) -> Result<(), LowerError> {
-        for (&face, bounds) in &changes.bounds {
-            let mut names = Vec::new();
-            for bound in bounds {
-                names.push(self.append_bound(face, bound)?);
-            }
+    /// Adds the new bounds of faces of the model and takes away those that go.
+    pub(super) fn bounds_of_old_faces(
+        &mut self,
+        changes: &ChangeSet,
+        edges: &Arena<NewEdgeId, InstanceName>,
+    ) -> Result<(), LowerError> {
+        for (&face, bounds) in &changes.new_bounds {
             let user = super::instance_name(self.model.origins.faces[face])?;
-            let list = self.attribute_span(user, "bounds")?;
-            // Before the list's closing parenthesis.
-            let end = list.end - 1;
-            let text: String = names.iter().map(|name| format!(",{name}")).collect();
-            self.edit(Span { start: end, end }, text);
+            let (position, list) = self.list(user, "bounds")?;
+            // In a turned face bounds count reversed.
+            let sense = self.is_turned(face, user)?;
+            for bound in bounds {
+                let name = self.append_bound(bound, sense, edges)?;
+                self.lists.add(position, list, name);
+            }
+        }
+        for &bound in &changes.removed_bounds {
+            let name = super::instance_name(self.model.origins.loops[bound])?;
+            let user = super::instance_name(self.model.origins.faces[self.model.brep.loops[bound].face])?;
+            self.leave(user, name)?;
         }
         Ok(())
     }
 
-    fn append_bound(&mut self, face: FaceId, bound: &NewBound) -> Result<InstanceName, LowerError> {
-        let surface = match self.own_surfaces.get(&face) {
-            Some(name) => *name,
-            None => super::instance_name(self.model.origins.surfaces[self.model.brep.faces[face].surface])?,
-        };
-        let mut vertices = Vec::new();
-        for edge in &bound.edges {
-            let point = self.append_point(edge.start.coords.as_slice())?;
-            let body = Body::simple("VERTEX_POINT", vec![Value::empty_name(), Value::Reference(point)]);
-            vertices.push(self.append(&body)?);
-        }
-        let mut uses = Vec::new();
-        for (k, edge) in bound.edges.iter().enumerate() {
-            let ends = [vertices[k], vertices[(k + 1) % vertices.len()]];
-            let curve = self.append_edge(face, surface, edge, ends)?;
-            let sense = verbatim(if bound.forward { ".T." } else { ".F." });
-            let any = || verbatim("*");
-            let values = vec![Value::empty_name(), any(), any(), Value::Reference(curve), sense];
-            uses.push(Value::Reference(self.append(&Body::simple("ORIENTED_EDGE", values))?));
-        }
-        if !bound.forward {
-            uses.reverse();
-        }
-        let around = self.append(&Body::simple("EDGE_LOOP", vec![Value::empty_name(), Value::List(uses)]))?;
-        let values = vec![Value::empty_name(), Value::Reference(around), verbatim(".T.")];
-        self.append(&Body::simple("FACE_BOUND", values))
+    /// Whether the face stands in an oriented face that turns it.
+    fn is_turned(&self, face: FaceId, name: InstanceName) -> Result<bool, LowerError> {
+        let written = self.attribute(name, "same_sense")?.as_bool();
+        let written = written.ok_or(LowerError::Attribute { name, attribute: "same_sense" })?;
+        Ok(written != self.model.brep.faces[face].same_sense)
     }
 
-    fn append_edge(
+    /// Appends a bound; `turned` writes it to count reversed.
+    pub(super) fn append_bound(
         &mut self,
-        face: FaceId,
-        surface: InstanceName,
-        edge: &NewEdge,
-        [start, end]: [InstanceName; 2],
+        bound: &NewBound,
+        turned: bool,
+        edges: &Arena<NewEdgeId, InstanceName>,
     ) -> Result<InstanceName, LowerError> {
-        let old = super::instance_name(self.model.origins.faces[face])?;
-        let space = self.append_curve(old, &edge.curve, &Inherited::nothing())?;
-        let flat = self.append_curve2d(old, &edge.pcurve, &Inherited::nothing())?;
-        let context = self.append(&compose::parametric_context())?;
-        let values =
-            vec![Value::empty_name(), Value::List(vec![Value::Reference(flat)]), Value::Reference(context)];
-        let holder = self.append(&Body::simple("DEFINITIONAL_REPRESENTATION", values))?;
-        let values = vec![Value::empty_name(), Value::Reference(surface), Value::Reference(holder)];
-        let pcurve = self.append(&Body::simple("PCURVE", values))?;
-        let values = vec![
-            Value::empty_name(),
-            Value::Reference(space),
-            Value::List(vec![Value::Reference(pcurve)]),
-            verbatim(".CURVE_3D."),
-        ];
-        let curve = self.append(&Body::simple("SURFACE_CURVE", values))?;
-        let ends = [start, end].map(Value::Reference);
-        let values =
-            [vec![Value::empty_name()], ends.to_vec(), vec![Value::Reference(curve), verbatim(".T.")]];
-        self.append(&Body::simple("EDGE_CURVE", values.concat()))
+        let mut uses = Vec::new();
+        for coedge in &bound.coedges {
+            uses.push(Value::Reference(self.oriented_edge(coedge, edges)?));
+        }
+        let around = self.append(&Body::simple("EDGE_LOOP", vec![Value::empty_name(), Value::List(uses)]))?;
+        let sense = verbatim(if turned { ".F." } else { ".T." });
+        let keyword = if bound.outer { "FACE_OUTER_BOUND" } else { "FACE_BOUND" };
+        self.append(&Body::simple(keyword, vec![Value::empty_name(), Value::Reference(around), sense]))
+    }
+
+    fn oriented_edge(
+        &mut self,
+        coedge: &NewCoedge,
+        edges: &Arena<NewEdgeId, InstanceName>,
+    ) -> Result<InstanceName, LowerError> {
+        let edge = match coedge.edge {
+            EdgeRef::New(edge) => edges[edge],
+            EdgeRef::Kept(edge) => self.used(self.model.origins.edges[edge])?,
+        };
+        let sense = verbatim(if coedge.forward { ".T." } else { ".F." });
+        let any = || verbatim("*");
+        let values = vec![Value::empty_name(), any(), any(), Value::Reference(edge), sense];
+        self.append(&Body::simple("ORIENTED_EDGE", values))
     }
 }

@@ -20,11 +20,7 @@ pub(super) enum Value {
 impl Value {
     /// The name of a record that nobody named.
     pub(super) fn empty_name() -> Self {
-        Self::verbatim("''")
-    }
-
-    fn verbatim(text: &str) -> Self {
-        Self::Verbatim(text.to_owned())
+        verbatim("''")
     }
 
     fn list<T>(values: impl IntoIterator<Item = T>, one: impl Fn(T) -> Self) -> Self {
@@ -45,6 +41,11 @@ impl Value {
             }
         };
     }
+}
+
+/// Text as a value.
+pub(super) fn verbatim(text: &str) -> Value {
+    Value::Verbatim(text.to_owned())
 }
 
 /// What stands between `=` and `;`: one record, or the partial records of a complex instance.
@@ -94,7 +95,7 @@ impl Inherited {
 
     /// The name as a value.
     pub(super) fn name(&self) -> Value {
-        Value::verbatim(&self.name)
+        verbatim(&self.name)
     }
 }
 
@@ -123,12 +124,12 @@ pub(super) fn parametric_context() -> Body {
     Body(vec![
         ("GEOMETRIC_REPRESENTATION_CONTEXT", vec![Value::Integer(2)]),
         ("PARAMETRIC_REPRESENTATION_CONTEXT", vec![]),
-        ("REPRESENTATION_CONTEXT", vec![Value::verbatim("'2D SPACE'"), Value::empty_name()]),
+        ("REPRESENTATION_CONTEXT", vec![verbatim("'2D SPACE'"), Value::empty_name()]),
     ])
 }
 
 fn unspecified() -> Value {
-    Value::verbatim(".UNSPECIFIED.")
+    verbatim(".UNSPECIFIED.")
 }
 
 /// `B_SPLINE_CURVE_WITH_KNOTS`, as a complex instance when rational.
@@ -142,8 +143,8 @@ pub(super) fn spline_curve<const H: usize>(
         Value::Integer(spline.knots().degree()),
         Value::list(points, Value::Reference),
         unspecified(),
-        Value::verbatim(&inherited.closed[0]),
-        Value::verbatim(&inherited.self_intersect),
+        verbatim(&inherited.closed[0]),
+        verbatim(&inherited.self_intersect),
     ];
     let knots_part = vec![counts, knots, unspecified()];
     if !spline.is_rational() {
@@ -173,9 +174,9 @@ pub(super) fn spline_surface(spline: &NurbsSurface, points: &[InstanceName], inh
         Value::Integer(spline.knots_v().degree()),
         Value::list(rows, |row| Value::list(row, |&name| Value::Reference(name))),
         unspecified(),
-        Value::verbatim(&inherited.closed[0]),
-        Value::verbatim(&inherited.closed[1]),
-        Value::verbatim(&inherited.self_intersect),
+        verbatim(&inherited.closed[0]),
+        verbatim(&inherited.closed[1]),
+        verbatim(&inherited.self_intersect),
     ];
     let knots_part = vec![u_counts, v_counts, u_knots, v_knots, unspecified()];
     if !spline.is_rational() {

@@ -6,10 +6,10 @@ use super::super::to_model::parameter_scale;
 use super::compose::{self, Body, Inherited, Value};
 use super::request::{Coordinates, NewCurve, NewPlacement, NewVector, group_equal};
 use super::{LowerError, Lowering};
-use crate::brep::{CoedgeId, CurveId, EdgeId};
+use crate::brep::{CoedgeId, CurveId, EdgeId, FaceId};
 use crate::geometry::nurbs::NurbsCurve;
 use crate::geometry::transform::ParameterMap;
-use crate::geometry::{Curve, Curve2d};
+use crate::geometry::{Curve, Curve2d, Surface};
 use crate::math::{Vector2, Vector3};
 use crate::model::ChangeSet;
 
@@ -55,19 +55,11 @@ impl Lowering<'_> {
             let (_, representation) = self.reference(pcurve, "reference_to_curve")?;
             let (token, target) = self.first_reference(representation, "items")?;
             let unit = self.file_parameters(coedge, changes);
-            let in_file = |curve: &Curve2d| {
-                let unwritable = |_| LowerError::Unwritable { name: target, kind: "parameter curve" };
-                if unit.is_identity() {
-                    Ok(curve.clone())
-                } else {
-                    curve.transformed(&unit).map_err(unwritable)
-                }
-            };
             // What the file says now counts in the unit of the surface that it lies on now.
             let same_unit = unit == self.file_parameters(coedge, &ChangeSet::default());
             let old = self.model.brep.coedges[coedge].pcurve.as_ref().filter(|_| same_unit);
-            let old = old.map(in_file).transpose()?;
-            self.curves.add(target, token, NewCurve::Plane { old, new: in_file(new)? });
+            let old = old.map(|old| in_file(old, &unit, target)).transpose()?;
+            self.curves.add(target, token, NewCurve::Plane { old, new: in_file(new, &unit, target)? });
         }
         Ok(())
     }
@@ -77,7 +69,17 @@ impl Lowering<'_> {
         let brep = &self.model.brep;
         let face = brep.loops[brep.coedges[coedge].in_loop].face;
         let surface = changes.surfaces.get(&face).or_else(|| brep.surface_of(face).read());
-        let radians = self.model.context_of(face).angle.radians;
+        self.parameters_in_file(face, surface)
+    }
+
+    /// Radians of one unit of angle where a face is written.
+    pub(super) fn radians_of(&self, face: FaceId) -> f64 {
+        self.model.context_of(face).angle.radians
+    }
+
+    /// File parameters of a surface, written in the context of a face, from those of the model.
+    pub(super) fn parameters_in_file(&self, face: FaceId, surface: Option<&Surface>) -> ParameterMap {
+        let radians = self.radians_of(face);
         let [u, v] = surface.map_or([1.0, 1.0], |surface| parameter_scale(surface, radians));
         ParameterMap::stretch(1.0 / u, 1.0 / v, Vector2::zeros())
     }
@@ -334,6 +336,18 @@ impl Lowering<'_> {
     pub(super) fn append_net(&mut self, points: &[Coordinates]) -> Result<Vec<InstanceName>, LowerError> {
         points.iter().map(|point| self.append_point(point.as_slice())).collect()
     }
+}
+
+/// A curve in parameters in those of the file; it stands for the record `name`, or beside it.
+pub(super) fn in_file(
+    curve: &Curve2d,
+    unit: &ParameterMap,
+    name: InstanceName,
+) -> Result<Curve2d, LowerError> {
+    if unit.is_identity() {
+        return Ok(curve.clone());
+    }
+    curve.transformed(unit).map_err(|_| LowerError::Unwritable { name, kind: "parameter curve" })
 }
 
 pub(super) fn vector3(direction: &Vector3<f64>) -> NewVector {

@@ -16,12 +16,15 @@ mod bound;
 mod compose;
 mod curve;
 mod derived_curve;
+mod edge;
+mod face;
+mod list;
 mod placement;
 mod point;
 mod request;
 mod surface;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::edit;
 use super::exchange_structure::{ExchangeStructure, InstanceName};
@@ -72,6 +75,21 @@ pub enum LowerError {
         /// The missing record.
         name: InstanceName,
     },
+    /// A record that should go is what another one is about.
+    #[error("{name} cannot go: {user} ({entity}, line {line}) is about it")]
+    StillNeeded {
+        /// The record that should go.
+        name: InstanceName,
+        /// The record that refers to it.
+        user: InstanceName,
+        /// Keyword of that one.
+        entity: String,
+        /// Its line, from 1.
+        line: usize,
+    },
+    /// A new edge with a curve of its own has no curve in the parameters of any face.
+    #[error("a new edge has no curve in the parameters of a face")]
+    NoFaceOfEdge,
     /// New records have no place to go.
     #[error("the file has no data section for new records")]
     NoDataSection,
@@ -106,7 +124,7 @@ pub fn lower(structure: &ExchangeStructure, model: &Model, changes: &ChangeSet) 
         return lowering.finish();
     }
     lowering.surfaces(changes)?;
-    lowering.bounds(changes)?;
+    lowering.topology(changes)?;
     lowering.request_edge_curves(changes)?;
     lowering.request_pcurves(changes)?;
     lowering.request_free_curves(changes)?;
@@ -130,6 +148,12 @@ struct Lowering<'a> {
     appended: Vec<String>,
     /// References that went away, for each record referred to.
     lost: BTreeMap<InstanceName, usize>,
+    /// References of new records to old ones, for each record referred to.
+    gained: BTreeMap<InstanceName, usize>,
+    /// Records that go whoever used them.
+    retired: BTreeSet<InstanceName>,
+    /// Lists whose members change.
+    lists: list::ListEdits,
     /// References that a record makes more than once, for each record that was asked.
     repeated: BTreeMap<u32, BTreeMap<InstanceName, usize>>,
     ending: LineEnding,
@@ -152,6 +176,9 @@ impl<'a> Lowering<'a> {
             edits: Vec::new(),
             appended: Vec::new(),
             lost: BTreeMap::new(),
+            gained: BTreeMap::new(),
+            retired: BTreeSet::new(),
+            lists: list::ListEdits::default(),
             repeated: BTreeMap::new(),
             ending: LineEnding::of(structure.source().bytes()),
             own_surfaces: BTreeMap::new(),
@@ -178,6 +205,18 @@ impl<'a> Lowering<'a> {
     /// One reference to `target` is no more.
     fn lose(&mut self, target: InstanceName) {
         *self.lost.entry(target).or_insert(0) += 1;
+    }
+
+    /// A new record refers to `target`.
+    fn gain(&mut self, target: InstanceName) {
+        *self.gained.entry(target).or_insert(0) += 1;
+    }
+
+    /// The record of an element that a new record refers to.
+    fn used(&mut self, origin: Origin) -> Result<InstanceName, LowerError> {
+        let name = instance_name(origin)?;
+        self.gain(name);
+        Ok(name)
     }
 
     /// Turns one reference token from `old` to `new`.

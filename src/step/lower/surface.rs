@@ -36,7 +36,7 @@ impl Lowering<'_> {
         let agree = faces.iter().all(|face| changes.surfaces[face] == changes.surfaces[&faces[0]]);
         if agree && self.is_covered(target, faces.len() + pcurves.len()) {
             let old = self.model.brep.surfaces[surface].read().cloned();
-            let radians = self.model.context_of(faces[0]).angle.radians;
+            let radians = self.radians_of(faces[0]);
             return self.edit_surface(target, old.as_ref(), &changes.surfaces[&faces[0]], radians);
         }
         for &face in faces {
@@ -53,7 +53,8 @@ impl Lowering<'_> {
     }
 
     fn give_own_surface(&mut self, face: FaceId, old: InstanceName, new: &Surface) -> Result<(), LowerError> {
-        let body = self.surface_body(old, new, self.model.context_of(face).angle.radians)?;
+        let inherited = self.inherited_by_surface(old);
+        let body = self.surface_body(old, new, self.radians_of(face), &inherited)?;
         let name = self.append(&body)?;
         let user = super::instance_name(self.model.origins.faces[face])?;
         let (token, _) = self.reference(user, "face_geometry")?;
@@ -121,7 +122,8 @@ impl Lowering<'_> {
                 self.request_net(target, &compose::euclidean(old.net()), &compose::euclidean(new.net()))
             }
             _ => {
-                let body = self.surface_body(target, new, radians)?;
+                let inherited = self.inherited_by_surface(target);
+                let body = self.surface_body(target, new, radians, &inherited)?;
                 self.rewrite(target, &body)
             }
         }
@@ -170,27 +172,27 @@ impl Lowering<'_> {
         Ok(Body::simple(keyword, [inherited.name(), position].into_iter().chain(reals).collect()))
     }
 
-    /// Text of a surface that takes the place, and the name, of the record `old`.
-    fn surface_body(
+    /// Text of a surface that stands for the record `old`, or beside it.
+    pub(super) fn surface_body(
         &mut self,
         old: InstanceName,
         surface: &Surface,
         radians: f64,
+        inherited: &Inherited,
     ) -> Result<Body, LowerError> {
-        let inherited = self.inherited_by_surface(old);
         Ok(match surface {
-            Surface::Plane(frame) => self.elementary("PLANE", &inherited, frame, &[])?,
+            Surface::Plane(frame) => self.elementary("PLANE", inherited, frame, &[])?,
             Surface::Cylinder { frame, radius } => {
-                self.elementary("CYLINDRICAL_SURFACE", &inherited, frame, &[*radius])?
+                self.elementary("CYLINDRICAL_SURFACE", inherited, frame, &[*radius])?
             }
             Surface::Sphere { frame, radius } => {
-                self.elementary("SPHERICAL_SURFACE", &inherited, frame, &[*radius])?
+                self.elementary("SPHERICAL_SURFACE", inherited, frame, &[*radius])?
             }
             Surface::Torus { frame, major_radius, minor_radius } => {
-                self.elementary("TOROIDAL_SURFACE", &inherited, frame, &[*major_radius, *minor_radius])?
+                self.elementary("TOROIDAL_SURFACE", inherited, frame, &[*major_radius, *minor_radius])?
             }
             Surface::Cone { frame, radius, semi_angle } => {
-                self.elementary("CONICAL_SURFACE", &inherited, frame, &[*radius, semi_angle / radians])?
+                self.elementary("CONICAL_SURFACE", inherited, frame, &[*radius, semi_angle / radians])?
             }
             Surface::LinearExtrusion { curve, direction } => {
                 let curve = self.append_curve(old, curve, &Inherited::nothing())?;
@@ -206,7 +208,7 @@ impl Lowering<'_> {
             }
             Surface::Nurbs(spline) => {
                 let points = self.append_net(&compose::euclidean(spline.net()))?;
-                compose::spline_surface(spline, &points, &inherited)
+                compose::spline_surface(spline, &points, inherited)
             }
             Surface::Offset { .. }
             | Surface::Trimmed { .. }

@@ -15,7 +15,7 @@ mod stretch;
 
 use crate::ops::net::layout;
 pub use crate::ops::net::layout::inner_loops;
-pub use report::{FaceMeasures, GroupMeasures, LoopMeasures, Measures};
+pub use report::{FaceMeasures, GroupMeasures, LoopMeasures, Measures, SkinMeasures};
 pub use scope::Scope;
 
 use super::scaling::{Hold, Scaling};

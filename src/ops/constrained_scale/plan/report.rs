@@ -6,9 +6,13 @@ use super::hold::Held;
 use super::layout::spline_of;
 use super::scope::face_name;
 use super::stretch::{SolvedGroup, Stretched};
+use crate::geometry::nurbs::Deviation;
 use crate::model::Model;
 use crate::ops::OperationError;
-use crate::ops::constrained_scale::measures::{MotionDeviation, REPORT_SAMPLES, motion_deviation, quality};
+use crate::ops::constrained_scale::measures::{
+    MotionDeviation, REPORT_SAMPLES, certified, motion_deviation, quality,
+};
+use crate::ops::constrained_scale::skins::Thickness;
 
 /// Figures of all faces with held loops.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -17,6 +21,24 @@ pub struct Measures {
     pub faces: Vec<FaceMeasures>,
     /// Groups of held loops.
     pub groups: Vec<GroupMeasures>,
+    /// Opposite faces that a feature ties together, with the material between them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub skins: Vec<SkinMeasures>,
+}
+
+/// The material between two opposite faces, measured along the normal of the first. Lengths are in file units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SkinMeasures {
+    /// The faces.
+    pub faces: [String; 2],
+    /// Least, greatest and mean thickness as it was.
+    pub thickness_before: [f64; 3],
+    /// The same of the plain scaling.
+    pub thickness_plain: [f64; 3],
+    /// The same now.
+    pub thickness: [f64; 3],
+    /// Least quotient of the thickness now and the lesser of the two others at its place; below 0.8 is refused.
+    pub least_ratio: f64,
 }
 
 /// Figures of one stretched face. Lengths are in file units.
@@ -34,6 +56,11 @@ pub struct FaceMeasures {
     pub deviation_max: f64,
     /// Root mean square of these distances.
     pub deviation_rms: f64,
+    /// Proved bound of these distances over all of the surface outside the held cells, not only at samples; absent where
+    /// nothing could be proved.
+    pub deviation_bound: Option<f64>,
+    /// The same within the held cells, which keep their shape where the plain scaling does not.
+    pub deviation_bound_held: Option<f64>,
     /// Greatest angle between the normals there, in degrees.
     pub normal_angle_max_deg: f64,
     /// Correlation of the Gaussian curvatures.
@@ -79,7 +106,8 @@ const RIGIDITY: f64 = 1e-12;
 /// Measures all stretched faces and held loops.
 pub(super) fn measure(model: &Model, held: &Held, stretched: &Stretched) -> Result<Measures, OperationError> {
     let faces = stretched.faces.iter().map(|(&id, face)| {
-        let q = quality(face, REPORT_SAMPLES);
+        let (q, proved) = (quality(face, REPORT_SAMPLES), certified(face));
+        let bound = |part: Option<Deviation>| part.map(|part| part.bound).filter(|bound| bound.is_finite());
         FaceMeasures {
             face: face_name(model, id),
             control_points: [face.points_before, face.surface.net().len()],
@@ -87,6 +115,8 @@ pub(super) fn measure(model: &Model, held: &Held, stretched: &Stretched) -> Resu
             area_ratio_min: face.compression.ratio,
             deviation_max: q.deviation_max,
             deviation_rms: q.deviation_rms,
+            deviation_bound: bound(proved.outside),
+            deviation_bound_held: bound(proved.held),
             normal_angle_max_deg: q.normal_angle_max.to_degrees(),
             gaussian_correlation: q.gaussian_correlation,
             mean_correlation: q.mean_correlation,
@@ -117,5 +147,15 @@ pub(super) fn measure(model: &Model, held: &Held, stretched: &Stretched) -> Resu
             residual: *residual,
         });
     }
-    Ok(Measures { faces, groups })
+    let skins = stretched.skins.iter().map(|(faces, pair)| {
+        let numbers = |t: Thickness| [t.least, t.greatest, t.mean];
+        SkinMeasures {
+            faces: faces.map(|face| face_name(model, face)),
+            thickness_before: numbers(pair.before),
+            thickness_plain: numbers(pair.plain),
+            thickness: numbers(pair.after),
+            least_ratio: pair.least_ratio,
+        }
+    });
+    Ok(Measures { faces, groups, skins: skins.collect() })
 }

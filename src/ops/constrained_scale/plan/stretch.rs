@@ -13,6 +13,7 @@ use crate::model::Model;
 use crate::ops::OperationError;
 use crate::ops::constrained_scale::faces::scale_faces;
 use crate::ops::constrained_scale::motion::Motion;
+use crate::ops::constrained_scale::skins::SkinPair;
 use crate::ops::constrained_scale::task::{FaceTask, Group, HeldLoop, Scaled, ScaledFace};
 
 /// Stretched faces and the motions of all groups.
@@ -24,6 +25,8 @@ pub(super) struct Stretched {
     pub motions: Vec<Motion>,
     /// Groups as they were solved.
     pub groups: Vec<SolvedGroup>,
+    /// Opposite faces that share a group.
+    pub skins: Vec<([FaceId; 2], SkinPair)>,
 }
 
 /// A group as it was solved.
@@ -45,7 +48,8 @@ pub(super) fn stretch(model: &Model, held: &Held, params: &Params) -> Result<Str
     let mut out = Stretched::default();
     let mut motions = vec![None; held.groups];
     for (faces, solved) in sets.iter().zip(solved) {
-        let Scaled { faces: scaled, groups, residual } = solved?;
+        let Scaled { faces: scaled, groups, skins, residual } = solved?;
+        out.skins.extend(skins.into_iter().map(|pair| (pair.faces.map(|f| faces[f]), pair)));
         for group in groups {
             let loops: Vec<(FaceId, usize)> = group.loops.iter().map(|&(f, k)| (faces[f], k)).collect();
             for (face, k) in &loops {

@@ -10,7 +10,8 @@ use crate::brep::{Brep, ParameterLoop};
 use crate::geometry::nurbs::{KnotVector, NurbsCurve2, NurbsCurve3, NurbsSurface};
 use crate::geometry::{Curve, Curve2d};
 use crate::math::{Frame, Point3, Vector3};
-use crate::model::change_set::{NewBound, NewEdge};
+use crate::model::ChangeSet;
+use crate::model::change_set::NewBound;
 
 /// The edges of a hole in order, each in the parameters of its surface.
 pub type Hole = Vec<NurbsCurve2>;
@@ -163,8 +164,8 @@ pub(super) fn carried(
     Ok(moved)
 }
 
-/// The new bound that a hole becomes on the finished surface; `sense` tells whether the face's normal is the surface's.
-/// Gives the greatest distance of its curves from the surface, too.
+/// Adds the new bound that a hole becomes on the finished surface; `sense` tells whether the face's normal is the
+/// surface's. Gives the greatest distance of its curves from the surface, too.
 ///
 /// # Errors
 /// [`PasteError::HoleOutsideTarget`].
@@ -173,6 +174,7 @@ pub(super) fn bound(
     surface: &NurbsSurface,
     sense: bool,
     tolerance: f64,
+    changes: &mut ChangeSet,
 ) -> Result<(NewBound, f64), PasteError> {
     let mut edges = Vec::new();
     let mut worst = 0.0_f64;
@@ -190,11 +192,11 @@ pub(super) fn bound(
         let net = cubic.points.iter().map(|p| [p[0], p[1], p[2], 1.0]).collect();
         let space = NurbsCurve3::new(cubic.knots, net).map_err(|_| PasteError::HoleOutsideTarget)?;
         let start = Point3::from(at(curve.domain().0).0);
-        edges.push(NewEdge { curve: Curve::Nurbs(space), pcurve: Curve2d::Nurbs(curve.clone()), start });
+        edges.push((Curve::Nurbs(space), Curve2d::Nurbs(curve.clone()), start));
     }
     // A hole runs clockwise as seen against the face's normal.
     let forward = (area(hole) < 0.0) == sense;
-    Ok((NewBound { edges, forward }, worst))
+    Ok((changes.ring(edges, forward), worst))
 }
 
 /// Signed area that a hole encloses in the parameters, by its sampled edges.

@@ -21,8 +21,8 @@ use crate::brep::{BodyKind, FaceId};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::geometry::nurbs::NurbsSurface;
 use crate::math::{Affine, Matrix3, Point3, Vector3};
-use crate::model::Model;
 use crate::model::change_set::NewBound;
+use crate::model::{ChangeSet, Model};
 use crate::ops::OperationError;
 use crate::ops::net::Mask;
 use crate::ops::net::layout::face_name;
@@ -111,7 +111,7 @@ pub struct Params<'a> {
 #[derive(Debug, Clone)]
 pub struct Plan {
     /// New geometry.
-    pub change_set: crate::model::ChangeSet,
+    pub change_set: ChangeSet,
     /// Figures for the report.
     pub measures: Measures,
     /// Facts worth telling.
@@ -190,32 +190,34 @@ pub fn plan(model: &Model, params: &Params<'_>) -> Result<Plan, OperationError> 
         seam_moved,
         places,
     };
-    let bounds = new_bounds(model, params.target, &surface, &holes, &mut measures)?;
-    let mut change_set = target.changes(model, params.target, surface, seam_moved);
-    if !bounds.is_empty() {
-        change_set.bounds.insert(params.target, bounds);
+    let mut change_set = target.changes(model, params.target, surface.clone(), seam_moved);
+    if !holes.is_empty() {
+        let (bounds, error) = new_bounds(model, params.target, &surface, &holes, &mut change_set)?;
+        measures.hole_error = Some(error);
+        change_set.new_bounds.insert(params.target, bounds);
     }
     Ok(Plan { change_set, measures, notes })
 }
 
-/// The carried holes as bounds of the target on its finished surface.
+/// The carried holes as bounds of the target on its finished surface, and how far they miss it.
 fn new_bounds(
     model: &Model,
     face: FaceId,
     surface: &NurbsSurface,
     holes: &[Hole],
-    measures: &mut Measures,
-) -> Result<Vec<NewBound>, OperationError> {
+    changes: &mut ChangeSet,
+) -> Result<(Vec<NewBound>, f64), OperationError> {
     let uncertainty = model.context_of(face).uncertainty.map(|t| t.0);
     let tolerance = exact::carry_tolerance(uncertainty, surface.bounding_box().diagonal());
     let sense = model.brep.faces[face].same_sense;
     let mut bounds = Vec::new();
+    let mut worst = 0.0_f64;
     for hole in holes {
-        let (bound, error) = holes::bound(hole, surface, sense, tolerance)?;
-        measures.hole_error = Some(measures.hole_error.unwrap_or(0.0).max(error));
+        let (bound, error) = holes::bound(hole, surface, sense, tolerance, changes)?;
+        worst = worst.max(error);
         bounds.push(bound);
     }
-    Ok(bounds)
+    Ok((bounds, worst))
 }
 
 /// Whether a hole in the face would open a closed shell.

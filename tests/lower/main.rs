@@ -2,7 +2,10 @@
 //!
 //! The expected geometry is the affine image that was asked for; everything else must be as it was.
 
+mod block;
+#[path = "../support/mod.rs"]
 mod support;
+mod topology;
 
 use std::collections::BTreeMap;
 
