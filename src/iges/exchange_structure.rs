@@ -131,6 +131,11 @@ impl ExchangeStructure {
         self.instances().next_back().map(|instance| instance.number())
     }
 
+    /// Reports every pointer to an entry that the file does not have.
+    pub fn unresolved_pointers(&self, sink: &mut dyn Sink) {
+        super::reverse_index::unresolved_pointers(self, sink);
+    }
+
     /// Reports every record without record delimiter, and every record whose first parameter is not its entity type. The
     /// index does not look at parameters, so this is a pass of its own.
     pub fn damaged_records(&self, sink: &mut dyn Sink) {

@@ -227,6 +227,7 @@ mod tests {
 
     #[test]
     fn a_record_without_an_end_stays_without() {
-        assert_eq!(changed(&["116,1.,2.", "3."], &[(1, &["7."])]), [(0..1, vec!["116,7.,2.".to_owned()])]);
+        let laid = changed(&["116,1.,2.,", "3."], &[(3, &["7."])]);
+        assert_eq!(laid, [(1..2, vec!["7.".to_owned()])]);
     }
 }

@@ -309,7 +309,7 @@ mod tests {
         record.integer(1).text(&"x".repeat(100)).real(-0.1);
         let lines = laid_out(&record.finish(), Delimiters::default(), 64);
         let lengths: Vec<usize> = lines.iter().map(Vec::len).collect();
-        assert_eq!(lengths, [64, 51]);
+        assert_eq!(lengths, [64, 52]);
         assert_eq!(
             lines.concat(),
             [b"406,1,100H".as_slice(), "x".repeat(100).as_bytes(), b",-0.1;"].concat()

@@ -11,6 +11,8 @@ pub use super::detail_file::DetailTransfer;
 pub use super::paste_file::FeaturePaste;
 use super::selector::Selector;
 pub use super::simplify_file::Simplify;
+use crate::model::Origin;
+use crate::model::origin::ParseOriginError;
 use crate::units::Length;
 
 /// A job: parts, an operation or several, and where the results go.
@@ -465,8 +467,8 @@ pub enum Hold {
     Near([LengthSetting; 3]),
     /// The inner loop of that number on the only face in scope, from 0.
     Index(usize),
-    /// The inner loop that uses an edge: `"#1042"`.
-    Edge(u64),
+    /// The inner loop that uses an edge: `"#1042"`, `"D43/5"`.
+    Edge(Origin),
 }
 
 #[derive(Deserialize, JsonSchema)]
@@ -480,7 +482,7 @@ struct HoldKeys {
     near: Option<[LengthSetting; 3]>,
     /// The inner loop of this number on the only face in scope, counted from 0.
     index: Option<usize>,
-    /// The inner loop that uses this edge, by its instance name: `"#1042"`.
+    /// The inner loop that uses this edge, by its record: `"#1042"`, `"D43/5"`.
     edge: Option<String>,
 }
 
@@ -499,7 +501,7 @@ impl TryFrom<HoldKeys> for Hold {
             HoldKeys { loops: None, near: Some(point), index: None, edge: None } => Ok(Self::Near(point)),
             HoldKeys { loops: None, near: None, index: Some(index), edge: None } => Ok(Self::Index(index)),
             HoldKeys { loops: None, near: None, index: None, edge: Some(edge) } => {
-                super::selector::instance(&edge).map(Self::Edge)
+                edge.parse().map(Self::Edge).map_err(|error: ParseOriginError| error.to_string())
             }
             _ => Err("expected exactly one of the keys `loops`, `near`, `index`, `edge`".to_owned()),
         }

@@ -154,7 +154,7 @@ mod tests {
                 "unknown value",
             ),
             (&format!("{scale}factors = [1,1,1]\nhold = [{{}}]"), "{}", "exactly one of the keys"),
-            (&format!("{scale}factors = [1,1,1]\nface = \"1042\""), "\"1042\"", "not an instance name"),
+            (&format!("{scale}factors = [1,1,1]\nface = \"1042\""), "\"1042\"", "not the name of a record"),
             (&format!("{scale}factors = [1,1,1]\nface = {{ colour = \"red\" }}"), "\"red\"", "not a colour"),
             (&format!("{scale}factors = [1,1,1]\nface = {{}}"), "{}", "an empty selector"),
             (&format!("{scale}factors = [1,1,1]\ncontinuity = 3"), "3", "expected 0, 1 or 2"),

@@ -1,7 +1,5 @@
 //! Tokens tile any file, the empty patch is the identity, damage is diagnosed with its place.
 
-use std::path::PathBuf;
-
 use resurf::diagnostic::Diagnostics;
 use resurf::exchange::Patch;
 use resurf::iges::{ExchangeStructure, Form, ParameterKind, syntax};
@@ -14,19 +12,6 @@ pub fn parse(bytes: &[u8]) -> (ExchangeStructure, Diagnostics) {
     let structure = ExchangeStructure::parse(Source::new(bytes.to_vec()).expect("small"), &mut sink);
     structure.damaged_records(&mut sink);
     (structure, sink)
-}
-
-/// Every IGES file of the corpus, variants included.
-pub fn corpus_files() -> Vec<PathBuf> {
-    let Some(corpus) = support::corpus() else { return Vec::new() };
-    let all = walkdir::WalkDir::new(corpus).sort_by_file_name().into_iter().filter_map(Result::ok);
-    all.map(walkdir::DirEntry::into_path)
-        .filter(|path| {
-            let extension =
-                path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-            matches!(extension.as_str(), "igs" | "iges")
-        })
-        .collect()
 }
 
 /// The laws that hold for any bytes.
@@ -200,7 +185,7 @@ fn hostile_pointers_share_no_cards() {
 #[test]
 fn every_corpus_file_keeps_the_laws() {
     let mut records = Vec::new();
-    for path in corpus_files() {
+    for path in support::corpus_files(support::IGES) {
         let bytes = std::fs::read(&path).expect("readable");
         let (structure, _) = assert_laws(&bytes);
         for instance in structure.instances() {

@@ -4,7 +4,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::exchange_structure::{Instance, InstanceName};
 use super::super::parameter::{Parameter, Parameters};
-
 use crate::exchange::Edit;
 use crate::source::{LineEnding, Span};
 

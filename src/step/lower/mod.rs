@@ -249,8 +249,6 @@ fn changed_twice(structure: &ExchangeStructure, error: PatchError) -> LowerError
 }
 
 fn instance_name(origin: Origin) -> Result<InstanceName, LowerError> {
-    match origin {
-        Origin::Instance(name) => Ok(InstanceName(name)),
-        Origin::DirectoryEntry(_) => Err(LowerError::ForeignOrigin { origin: origin.to_string() }),
-    }
+    let foreign = || LowerError::ForeignOrigin { origin: origin.to_string() };
+    origin.instance().map(InstanceName).ok_or_else(foreign)
 }
