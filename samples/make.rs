@@ -12,7 +12,7 @@ fn main() -> std::io::Result<()> {
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder)?;
         }
-        std::fs::write(path, sample.text)?;
+        std::fs::write(path, sample.bytes)?;
     }
     Ok(())
 }

@@ -10,6 +10,7 @@
 
 pub mod brep;
 pub mod cli;
+pub mod cloud;
 pub mod diagnostic;
 pub mod document;
 pub mod exchange;

@@ -42,6 +42,12 @@ fn basis(knots: &[f64], degree: usize, i: usize, t: f64, order: usize) -> f64 {
     sum
 }
 
+/// All B-splines at some places: a row for each place.
+pub fn basis_matrix(knots: &[f64], degree: usize, places: &[f64]) -> Vec<Vec<f64>> {
+    let n = knots.len() - degree - 1;
+    places.iter().map(|&t| (0..n).map(|i| basis(knots, degree, i, t, 0)).collect()).collect()
+}
+
 /// Indices of the B-splines that may differ from zero at `t`.
 fn support(knots: &[f64], degree: usize, t: f64) -> std::ops::RangeInclusive<usize> {
     let n = knots.len() - degree - 1;

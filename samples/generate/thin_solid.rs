@@ -10,10 +10,9 @@ use super::records::{Name, Records, Schema, list};
 use super::sheet::{BORDER_CORNERS, BORDERS, border_line, corners};
 use super::spline::{Curve, Surface};
 
-/// Thickness of the sheet, in millimetres.
-const THICKNESS: f64 = 2.0;
+/// Thickness of a sheet of metal or plastic, in millimetres.
+pub const SHEET: f64 = 2.0;
 const DOWN: [f64; 3] = [0.0, 0.0, -1.0];
-const OFFSET: [f64; 3] = [0.0, 0.0, -THICKNESS];
 /// Colour of the walls in the holes.
 const WALL: [f64; 3] = [0.85, 0.85, 0.2];
 
@@ -21,6 +20,7 @@ const WALL: [f64; 3] = [0.85, 0.85, 0.2];
 struct Solid<'a> {
     records: &'a mut Records,
     panel: &'a Panel,
+    thickness: f64,
     /// Outer skin, then inner.
     skins: [Name; 2],
     loops: [Vec<Name>; 2],
@@ -29,15 +29,16 @@ struct Solid<'a> {
 }
 
 /// The file of one thin solid.
-pub fn write(title: &'static str, panel: &Panel, schema: Schema) -> String {
+pub fn write(title: &'static str, panel: &Panel, thickness: f64, schema: Schema) -> String {
     let mut records = Records::new(title, schema);
     let product = records.product(title);
     let skins = [
         records.surface("outer", &panel.surface),
-        records.surface("inner", &panel.surface.translated(OFFSET)),
+        records.surface("inner", &panel.surface.translated(below(thickness))),
     ];
     let loops = [Vec::new(), Vec::new()];
-    let mut solid = Solid { records: &mut records, panel, skins, loops, walls: vec![], hole_walls: vec![] };
+    let mut solid =
+        Solid { records: &mut records, panel, thickness, skins, loops, walls: vec![], hole_walls: vec![] };
     solid.border_walls();
     solid.hole_walls();
     let (faces, hole_walls) = solid.faces();
@@ -58,10 +59,10 @@ impl Solid<'_> {
     fn border_walls(&mut self) {
         let corners = corners(self.panel);
         let top = corners.map(|corner| self.records.vertex(corner));
-        let bottom = corners.map(|[x, y, z]| self.records.vertex([x, y, z - THICKNESS]));
+        let bottom = corners.map(|[x, y, z]| self.records.vertex([x, y, z - self.thickness]));
         // A corner's edge lies on the walls beside it, so the walls' surfaces come first.
         let borders = BORDERS.map(|(side, at_end, _)| self.panel.surface.border(side, at_end));
-        let walls = [0, 1, 2, 3].map(|i| self.records.surface("wall", &ruled(&borders[i])));
+        let walls = [0, 1, 2, 3].map(|i| self.records.surface("wall", &ruled(&borders[i], self.thickness)));
         let mut corner_edges = Vec::new();
         for corner in 0..4 {
             let pcurves: Vec<Name> = (0..4)
@@ -77,7 +78,7 @@ impl Solid<'_> {
         let mut loops = [Vec::new(), Vec::new()];
         for (i, (side, at_end, forward)) in BORDERS.into_iter().enumerate() {
             let [start, end] = BORDER_CORNERS[i];
-            let edges = [(top, [0.0; 3], 0.0), (bottom, OFFSET, THICKNESS)];
+            let edges = [(top, [0.0; 3], 0.0), (bottom, below(self.thickness), self.thickness)];
             let mut skin = 0;
             let edges = edges.map(|(vertices, offset, v)| {
                 let curve = self.records.curve("", &borders[i].translated(offset));
@@ -114,14 +115,14 @@ impl Solid<'_> {
         let holes = self.panel.holes.iter().zip(self.panel.hole_curves());
         for (hole, curve) in holes {
             let start = curve.points[0];
-            let below = curve.translated(OFFSET);
+            let below = curve.translated(below(self.thickness));
             let vertices = [self.records.vertex(start), self.records.vertex(below.points[0])];
             let curves = [self.records.curve("hole", &curve), self.records.curve("hole", &below)];
             let along = self.records.vector(DOWN);
             let wall = self.records.add(format!("SURFACE_OF_LINEAR_EXTRUSION('',{},{along})", curves[0]));
             let edges = [0, 1].map(|skin| {
                 let on_skin = self.records.ellipse_pcurve(self.skins[skin], hole);
-                let on_wall = self.records.line_pcurve(wall, [0.0, skin as f64 * THICKNESS], [1.0, 0.0]);
+                let on_wall = self.records.line_pcurve(wall, [0.0, skin as f64 * self.thickness], [1.0, 0.0]);
                 let ends = [vertices[skin]; 2];
                 self.records.edge(ends, curves[skin], "SURFACE_CURVE", &[on_skin, on_wall])
             });
@@ -150,9 +151,14 @@ impl Solid<'_> {
 }
 
 /// The strip below a curve, from the curve at `v = 0` down to the thickness.
-fn ruled(curve: &Curve) -> Surface {
-    let below = curve.translated(OFFSET);
+fn ruled(curve: &Curve, thickness: f64) -> Surface {
+    let below = curve.translated(below(thickness));
     let net = curve.points.iter().zip(&below.points).flat_map(|(a, b)| [*a, *b]).collect();
-    let across = vec![0.0, 0.0, THICKNESS, THICKNESS];
+    let across = vec![0.0, 0.0, thickness, thickness];
     Surface { degrees: [curve.degree, 1], knots: [curve.knots.clone(), across], net }
+}
+
+/// The way from the outer skin to the inner one.
+fn below(thickness: f64) -> [f64; 3] {
+    [0.0, 0.0, -thickness]
 }

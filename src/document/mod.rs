@@ -1,9 +1,10 @@
-//! Recognises the format of a file; the one place that dispatches between formats.
+//! Recognises the format of a file, part or cloud; the one place that dispatches between formats.
 //!
 //! Holds no policy: what to do with a file that cannot be read is the caller's decision. STEP is read, plain,
 //! in a gzip stream or in a zip archive, and IGES; everything else is recognised, so that a message can say what the
 //! file is.
 
+pub mod cloud;
 mod compressed;
 
 use crate::diagnostic::Sink;
@@ -233,18 +234,6 @@ impl Document {
             _ => return None,
         };
         Some(self.source().position(span.start).line)
-    }
-
-    /// Records that state volume, area or centroid of a part, as the file names them: a change makes them stale.
-    #[must_use]
-    pub fn validation_properties(&self) -> Vec<String> {
-        match &self.structure {
-            Structure::Step(structure) => {
-                step::validation_properties(structure).iter().map(ToString::to_string).collect()
-            }
-            // IGES has no such thing.
-            Structure::Iges(_) => Vec::new(),
-        }
     }
 
     /// What the file means.

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 pub use super::finding::OwnFinding;
 use super::finding::tolerance;
-use super::stale_property::stale_properties;
+use super::validation_property::stale_properties;
 use crate::brep::check::{self, Finding};
 use crate::brep::{Arena, FaceId, VertexId};
 use crate::document::Document;
@@ -42,9 +42,9 @@ pub fn findings_of_faces(
     findings.iter().map(|finding| describe(document, model, finding)).collect()
 }
 
-/// Faces whose geometry or border a change set touches, and those that share an edge with them.
+/// Faces whose geometry or border a change set touches.
 #[must_use]
-pub fn touched(model: &Model, changes: &ChangeSet) -> BTreeSet<Origin> {
+pub fn changed_faces(model: &Model, changes: &ChangeSet) -> BTreeSet<FaceId> {
     let brep = &model.brep;
     let faces_of_edges = brep.faces_of_edges();
     let mut uses: Arena<VertexId, Vec<FaceId>> = brep.vertices.iter().map(|_| Vec::new()).collect();
@@ -57,10 +57,19 @@ pub fn touched(model: &Model, changes: &ChangeSet) -> BTreeSet<Origin> {
     }
     let mut faces: BTreeSet<FaceId> = changes.surfaces.keys().copied().collect();
     faces.extend(changes.new_bounds.keys().chain(&changes.removed_faces));
+    faces.extend(changes.new_faces.iter().map(|face| face.beside));
     faces.extend(changes.removed_bounds.iter().map(|&bound| brep.loops[bound].face));
     faces.extend(changes.curves.keys().flat_map(|&edge| &faces_of_edges[edge]));
     faces.extend(changes.pcurves.keys().map(|&coedge| brep.loops[brep.coedges[coedge].in_loop].face));
     faces.extend(changes.points.keys().flat_map(|&vertex| &uses[vertex]));
+    faces
+}
+
+/// The records of some faces and of those that share an edge with them.
+#[must_use]
+pub fn with_neighbours(model: &Model, mut faces: BTreeSet<FaceId>) -> BTreeSet<Origin> {
+    let brep = &model.brep;
+    let faces_of_edges = brep.faces_of_edges();
     let neighbours: Vec<FaceId> = faces
         .iter()
         .flat_map(|&face| brep.coedges_of(face))

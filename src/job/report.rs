@@ -70,6 +70,9 @@ pub struct PartReport {
     pub edits: Option<Edits>,
     /// Operations with what they measured.
     pub operations: Vec<OperationReport>,
+    /// What became of statements about volume, area and centroid of changed bodies.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub restated: Vec<super::restate::Restated>,
     /// What the file cannot say any more, by code.
     pub losses: Vec<DiagnosticReport>,
     /// Facts about the input, by code.
@@ -194,6 +197,7 @@ impl PartReport {
             side_files: Vec::new(),
             edits: None,
             operations: Vec::new(),
+            restated: Vec::new(),
             losses: Vec::new(),
             diagnostics: Vec::new(),
             diagnostic_counts: BTreeMap::new(),

@@ -8,16 +8,18 @@ use std::time::Instant;
 
 use super::failure::{PartError, code};
 use super::file::{Job, Operation};
+use super::flagged::flagged;
 use super::judge;
 use super::measure::Figures;
 use super::operate::operate;
 use super::output::Staged;
-use super::own_check::{OwnFinding, findings_of_faces, new_findings, touched};
+use super::own_check::{OwnFinding, changed_faces, findings_of_faces, new_findings, with_neighbours};
 use super::part::Read;
 use super::plan::Part;
 use super::report::{DiagnosticReport, Edits, PartReport, Report, Status, WritePath};
-use crate::document::Stamp;
-use crate::model::{Balance, ChangeSet, Model, Origin};
+use super::restate::{self, Outcome, restated};
+use crate::document::{Document, Stamp};
+use crate::model::{AnnotationKind, Balance, ChangeSet, Model, Origin};
 
 /// Whether a run writes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -151,6 +153,7 @@ fn changed_bytes(
     let mut balance = Balance::default();
     let mut bytes: Option<Vec<u8>> = None;
     let mut faces: BTreeSet<Origin> = BTreeSet::new();
+    let mut concerned = restate::Changed::default();
     for operation in &job.operation {
         // Each operation reads what the ones before it would have written.
         let between = bytes.as_ref().map(|bytes| read_between(bytes, part)).transpose()?;
@@ -165,17 +168,17 @@ fn changed_bytes(
         report.edits = Some(report.edits.map_or(edits, |before| before.followed_by(&edits)));
         if !patch.is_empty() {
             count_kinds(&mut surfaces, model, &changes);
-            faces.extend(touched(model, &changes));
+            let changed = changed_faces(model, &changes);
+            concerned.add(model, &changed);
+            faces.extend(with_neighbours(model, changed));
             balance.add(Balance::of(model, &changes));
             bytes = Some(patch.apply(document.source().bytes()));
         }
     }
-    if bytes.is_none() {
-        return Ok(Changed::default());
-    }
+    let Some(bytes) = bytes else { return Ok(Changed::default()) };
     report.write_path = Some(WritePath::Patched);
-    let stale = read.document.validation_properties();
-    report.losses.extend(stale.iter().map(|entity| stale_property(entity)));
+    let bytes = Some(state_anew(bytes, part, &model, &concerned, stamp, report)?);
+    report.losses.extend(flagged(&read.document, &model, &concerned));
     let findings = findings_of_faces(&read.document, &model, &faces, 1.0);
     let known = model.origins.faces.iter().map(|(_, origin)| *origin).collect();
     Ok(Changed { bytes, touched: faces, known, findings, surfaces, balance })
@@ -188,6 +191,52 @@ fn read_between(bytes: &[u8], part: &Part) -> Result<(Read, Model), PartError> {
     let model = read.model();
     read.refuse_errors()?;
     Ok((read, model))
+}
+
+/// States anew what the file says of the changed shape.
+fn state_anew(
+    bytes: Vec<u8>,
+    part: &Part,
+    before: &Model,
+    concerned: &restate::Changed,
+    stamp: &Stamp,
+    report: &mut PartReport,
+) -> Result<Vec<u8>, PartError> {
+    if !before.annotations.iter().any(|a| a.kind == AnnotationKind::ValidationProperty) {
+        return Ok(bytes);
+    }
+    let (read, after) = read_between(&bytes, part)?;
+    let (changes, told) = restated(before, &after, concerned);
+    report.restated = told;
+    let patch = read.document.lower(&after, &changes, stamp)?;
+    if patch.is_empty() {
+        return Ok(bytes);
+    }
+    let edits: Edits = patch.counts().into();
+    report.edits = Some(report.edits.map_or(edits, |before| before.followed_by(&edits)));
+    Ok(patch.apply(&bytes))
+}
+
+/// Tells what became of statements about the shape: what was to go may still stand there.
+fn tell_restated(document: &Document, report: &mut PartReport) {
+    for told in &mut report.restated {
+        let line = told.origin.and_then(|origin| document.line_of(origin));
+        if told.outcome == Outcome::Removed && line.is_some() {
+            told.was_kept();
+        }
+        let what = match told.outcome {
+            Outcome::Recomputed if told.reason.is_none() => continue,
+            Outcome::Recomputed => ("validation-property.stale", "is stated anew but for a part"),
+            Outcome::Removed => ("validation-property.removed", "is stated no more"),
+            Outcome::Kept => ("validation-property.stale", "is stated as it was before the change"),
+        };
+        let reason = told.reason.as_deref().unwrap_or_default();
+        report.losses.push(DiagnosticReport {
+            entity: Some(told.entity.clone()),
+            line,
+            ..warning(what.0, format!("'{}' {}: {reason}", told.name, what.1))
+        });
+    }
 }
 
 /// Counts of surfaces by kind, as a change set will leave them.
@@ -232,6 +281,7 @@ fn read_again(
         }
     }
     if report.write_path == Some(WritePath::Patched) {
+        tell_restated(&read.document, report);
         // Of the operations, not of the part's box: a part of an assembly may grow while the box stays.
         let growth = job.operation.iter().map(Operation::growth).product();
         let new = model.origins.faces.iter().map(|(_, origin)| *origin);
@@ -271,14 +321,6 @@ fn side_files(
 fn chord(job: &Job, model: &Model) -> Result<Option<f64>, PartError> {
     let wanted = job.tolerance.length.filter(|_| !job.also.is_empty());
     wanted.map(|length| judge::chord(model, length.0, "tolerance.length")).transpose()
-}
-
-fn stale_property(entity: &str) -> DiagnosticReport {
-    let message = "states a validation property of the part before the change; it is kept as it was";
-    DiagnosticReport {
-        entity: Some(entity.to_owned()),
-        ..warning("validation-property.stale", message.to_owned())
-    }
 }
 
 fn warning(code: &str, message: String) -> DiagnosticReport {

@@ -67,6 +67,8 @@ pub struct Measure {
     pub metres: Option<f64>,
     /// Name of the unit of length or angle; empty for any other.
     pub unit: String,
+    /// Record of its item: the three coordinates of a point have one.
+    pub origin: Origin,
 }
 
 /// What an annotation speaks of.
@@ -80,6 +82,8 @@ pub enum Element {
     Body(BodyId),
     /// A product: an index into [`Model::products`].
     Product(usize),
+    /// A use of a product: an index into [`Model::occurrences`].
+    Occurrence(usize),
 }
 
 impl Model {

@@ -126,10 +126,24 @@ impl Instances {
     #[must_use]
     pub fn of(model: &Model, unit: &LengthUnit, limit: usize) -> Self {
         let components = Components::of(model);
+        let roots = components.roots().rev().map(|product| root(model, product, unit)).collect();
+        let mut instances = Self::unfolded(model, &components, roots, limit);
+        if !instances.cut {
+            instances.add_loose(model, unit);
+        }
+        instances
+    }
+
+    /// Unfolds what is below one product, in the product's own coordinates; it is the first node.
+    #[must_use]
+    pub fn below(model: &Model, product: usize, limit: usize) -> Self {
+        let top = Node { product, occurrence: None, parent: None, depth: 0, transform: Affine::identity() };
+        Self::unfolded(model, &Components::of(model), vec![top], limit)
+    }
+
+    /// Unfolds some products; `ahead` are those still to visit, the next one last.
+    fn unfolded(model: &Model, components: &Components, mut ahead: Vec<Node>, limit: usize) -> Self {
         let mut instances = Self::default();
-        // Products still to visit, the next one last.
-        let mut ahead: Vec<Node> =
-            components.roots().rev().map(|product| root(model, product, unit)).collect();
         while let Some(node) = ahead.pop() {
             if instances.nodes.len() >= limit || instances.bodies.len() >= limit {
                 instances.cut = true;
@@ -145,7 +159,6 @@ impl Instances {
             }
             instances.nodes.push(node);
         }
-        instances.add_loose(model, unit);
         instances
     }
 

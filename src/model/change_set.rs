@@ -5,6 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::Origin;
 use crate::brep::id::ids;
 use crate::brep::{Arena, CoedgeId, CurveId, EdgeId, FaceId, LoopId, VertexId};
 use crate::geometry::{Curve, Curve2d, Surface};
@@ -103,6 +104,10 @@ pub struct ChangeSet {
     pub points: BTreeMap<VertexId, Point3<f64>>,
     /// New geometry of a curve that belongs to no edge.
     pub free_curves: BTreeMap<CurveId, Curve>,
+    /// New numbers of records that state something of the shape: the value of a measure, the coordinates of a point.
+    pub stated: BTreeMap<Origin, Vec<f64>>,
+    /// Properties that are stated no more; one that something else in the file refers to stays.
+    pub unstated: BTreeSet<Origin>,
     /// New vertices.
     pub new_vertices: Arena<NewVertexId, Point3<f64>>,
     /// New edges, each used by at least one bound.

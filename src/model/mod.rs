@@ -9,6 +9,7 @@ pub mod assembly;
 pub mod balance;
 pub mod change_set;
 pub mod inventory;
+pub mod mass;
 pub mod origin;
 
 pub use annotation::{Annotation, AnnotationKind, Element, Measure};
@@ -18,6 +19,7 @@ pub use assembly::{
 pub use balance::Balance;
 pub use change_set::ChangeSet;
 pub use inventory::Inventory;
+pub use mass::{Mass, Subject};
 pub use origin::{Origin, Origins};
 
 use crate::brep::{Arena, BodyId, Brep, CurveId, FaceId};

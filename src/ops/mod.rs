@@ -7,6 +7,7 @@ pub mod constrained_scale;
 pub mod detail_transfer;
 pub mod error;
 pub mod feature_paste;
+pub mod feature_reconstruction;
 pub mod force_density;
 pub mod net;
 pub mod simplify;

@@ -15,7 +15,6 @@ pub mod section;
 pub mod string;
 pub mod syntax;
 pub mod to_model;
-mod validation_property;
 pub mod view;
 pub mod write;
 
@@ -27,5 +26,4 @@ pub use parameter::{Parameter, ParameterKind, Parameters};
 pub use reverse_index::ReverseIndex;
 pub use section::{Section, SectionKind};
 pub use to_model::to_model;
-pub use validation_property::validation_properties;
 pub use view::EntityView;

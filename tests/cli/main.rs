@@ -9,6 +9,7 @@ mod paste;
 mod paste_corpus;
 mod paste_targets;
 mod patho;
+mod stated;
 #[path = "../support/mod.rs"]
 #[allow(dead_code, reason = "shared with other test binaries")]
 mod support;

@@ -17,7 +17,7 @@ use crate::number::format_real;
 use crate::source::Span;
 
 impl<'a> Lowering<'a> {
-    fn view(&self, name: InstanceName) -> Option<EntityView<'a>> {
+    pub(super) fn view(&self, name: InstanceName) -> Option<EntityView<'a>> {
         EntityView::of(self.structure.instance(name)?)
     }
 

@@ -22,6 +22,7 @@ mod list;
 mod placement;
 mod point;
 mod request;
+mod statement;
 mod surface;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -134,6 +135,8 @@ pub fn lower(structure: &ExchangeStructure, model: &Model, changes: &ChangeSet) 
     lowering.vectors()?;
     lowering.directions()?;
     lowering.points()?;
+    lowering.state(changes)?;
+    lowering.unstate(changes)?;
     lowering.remove_orphans();
     lowering.finish()
 }

@@ -10,7 +10,7 @@ use super::roots::{Root, Roots};
 use super::scope::{self, Scope};
 use super::topology::Builder;
 use super::units;
-use crate::model::{Annotation, AnnotationKind, Element, Measure, Origin};
+use crate::model::{Annotation, AnnotationKind, Element, Measure, Occurrence, Origin};
 use crate::step::InstanceName;
 use crate::step::entity::Entity;
 use crate::step::view::EntityView;
@@ -22,8 +22,13 @@ const MAX_ASPECTS: usize = 4096;
 const MAX_ELEMENTS: usize = 4096;
 
 /// Reads the annotations of a file.
-pub(super) fn annotations(builder: &Builder<'_, '_>, roots: &Roots, products: &Products) -> Vec<Annotation> {
-    let links = Links::of(builder, roots, products);
+pub(super) fn annotations(
+    builder: &Builder<'_, '_>,
+    roots: &Roots,
+    products: &Products,
+    occurrences: &[Occurrence],
+) -> Vec<Annotation> {
+    let links = Links::of(builder, roots, products, occurrences);
     let kinds = [
         (Root::Dimension, AnnotationKind::Dimension),
         (Root::Tolerance, AnnotationKind::Tolerance),
@@ -70,11 +75,16 @@ struct Links<'a, 'm> {
 }
 
 impl<'a, 'm> Links<'a, 'm> {
-    fn of(builder: &Builder<'a, '_>, roots: &Roots, products: &'m Products) -> Self {
+    fn of(
+        builder: &Builder<'a, '_>,
+        roots: &Roots,
+        products: &'m Products,
+        occurrences: &[Occurrence],
+    ) -> Self {
         let mut links = Self {
             scope: builder.scope,
             products,
-            elements: elements(builder),
+            elements: elements(builder, occurrences),
             items: HashMap::new(),
             below: HashMap::new(),
             above: HashMap::new(),
@@ -245,23 +255,25 @@ impl<'a, 'm> Links<'a, 'm> {
     /// The number of a measure, or the coordinates of a point.
     fn measures(&self, name: InstanceName) -> Vec<Measure> {
         let Ok(view) = self.scope.view(name) else { return Vec::new() };
+        let origin = Origin::Instance(view.name().0);
         if view.is(Entity::CartesianPoint) {
             let coordinates = view.list("coordinates").into_iter().flatten();
             let numbers = coordinates.filter_map(|number| number.as_f64());
             let name = view.text("name").into_owned();
-            let point = |value| Measure { name: name.clone(), value, metres: None, unit: String::new() };
+            let point =
+                |value| Measure { name: name.clone(), value, metres: None, unit: String::new(), origin };
             return numbers.take(3).map(point).collect();
         }
         let Ok(value) = view.real("value_component") else { return Vec::new() };
         let unit = view.reference("unit_component").ok();
         let metres = unit.and_then(|unit| units::metres_of(self.scope, unit));
         let unit = unit.map(|unit| units::name_of(self.scope, unit)).unwrap_or_default();
-        vec![Measure { name: view.text("name").into_owned(), value, metres, unit }]
+        vec![Measure { name: view.text("name").into_owned(), value, metres, unit, origin }]
     }
 }
 
 /// The element of each record.
-fn elements(builder: &Builder<'_, '_>) -> HashMap<InstanceName, Element> {
+fn elements(builder: &Builder<'_, '_>, occurrences: &[Occurrence]) -> HashMap<InstanceName, Element> {
     let mut elements = HashMap::new();
     let mut add = |origin: Origin, element: Element| {
         if let Origin::Instance(name) = origin {
@@ -275,6 +287,7 @@ fn elements(builder: &Builder<'_, '_>) -> HashMap<InstanceName, Element> {
     for (shell, &origin) in origins.shells.iter() {
         add(origin, Element::Body(builder.brep.shells[shell].body));
     }
+    occurrences.iter().enumerate().for_each(|(at, used)| add(used.origin, Element::Occurrence(at)));
     elements
 }
 

@@ -68,7 +68,7 @@ pub fn to_model(file: &ExchangeStructure, sink: &mut dyn Sink) -> Model {
         placed: &placed,
     };
     presentation::apply(&mut builder, &roots, &mut styled);
-    let annotations = annotation::annotations(&builder, &roots, &products);
+    let annotations = annotation::annotations(&builder, &roots, &products, &occurrences);
     let Builder { brep, origins, faces, sink, .. } = builder;
     habits.report(file, sink);
     header::check(file, sink);
