@@ -4,6 +4,7 @@ use super::code::ModelCode;
 use super::curve::Piece;
 use super::error::ReadError;
 use super::scope::Scope;
+use super::surface::SurfaceRead;
 use crate::brep::{
     Arena, BodyId, Brep, Coedge, CoedgeId, CurveId, Edge, EdgeId, Face, FaceId, Loop, LoopId, Shell, ShellId,
     SurfaceId, Vertex, VertexId,
@@ -73,6 +74,17 @@ impl<'a, 's> Builder<'a, 's> {
     pub(super) fn push_surface(&mut self, number: EntryNumber, surface: Carried<Surface>) -> SurfaceId {
         self.origins.surfaces.push(origin(number));
         self.brep.surfaces.push(surface)
+    }
+
+    /// A surface as it is read; one that is near its entity's only is reported.
+    pub(super) fn push_read(&mut self, number: EntryNumber, read: &SurfaceRead) -> SurfaceId {
+        if let Some(off) = read.off {
+            let message = format!(
+                "no kind of geometry is this surface; a B-spline within {off:.1e} of it stands in for it"
+            );
+            self.report(ModelCode::ApproximatedSurface, number, message);
+        }
+        self.push_surface(number, Carried::Read(read.surface.clone()))
     }
 
     /// A surface that is carried only.

@@ -26,6 +26,8 @@ pub enum ModelCode {
     UnpairedPcurve,
     /// A model-space curve that the file leaves out and that was approximated from the parameter-space one.
     ApproximatedCurve,
+    /// A surface that no kind of geometry is, and that was approximated.
+    ApproximatedSurface,
     /// Pieces of a boundary that do not run head to tail; they are turned.
     TurnedPiece,
     /// A boundary that runs with its face on the wrong side.
@@ -60,6 +62,7 @@ impl ModelCode {
             Self::BadPcurve => "iges.bad-pcurve",
             Self::UnpairedPcurve => "iges.unpaired-pcurve",
             Self::ApproximatedCurve => "iges.approximated-curve",
+            Self::ApproximatedSurface => "iges.approximated-surface",
             Self::TurnedPiece => "iges.turned-piece",
             Self::ReversedBoundary => "iges.reversed-boundary",
             Self::NotRigid => "iges.not-rigid",
@@ -82,6 +85,7 @@ impl ModelCode {
             }
             Self::BadPcurve
             | Self::ApproximatedCurve
+            | Self::ApproximatedSurface
             | Self::TurnedPiece
             | Self::ReversedBoundary
             | Self::NotRigid

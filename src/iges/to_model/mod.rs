@@ -6,6 +6,7 @@
 //! INVARIANT: chains of pointers are followed in loops with a cap, or, where geometry is made of geometry, by recursion
 //! with a cap on depth and on the count of parts.
 
+mod approximate;
 mod body;
 mod boundary;
 mod builder;
@@ -21,6 +22,7 @@ mod pcurve;
 mod presentation;
 mod product;
 mod roots;
+mod ruled;
 mod scope;
 mod spline;
 mod surface;

@@ -1,13 +1,14 @@
 //! Surfaces (IGES 5.3 sections 4.12 to 4.19, 4.24, 4.30 and 4.50 to 4.54), and how their parameters in the file lead
 //! to those of the model.
 
-use super::curve::{self, Piece, in_entity};
+use super::curve::{self, in_entity};
 use super::error::ReadError;
+use super::ruled::{self, Pace};
 use super::scope::{MAX_DEPTH, Scope, kind};
 use super::spline::{self, Rectangle};
-use crate::geometry::nurbs::{JoinError, NurbsSurface};
+use crate::geometry::nurbs::NurbsSurface;
 use crate::geometry::transform::ParameterMap;
-use crate::geometry::{Curve, Surface, ToNurbsError};
+use crate::geometry::{Curve, Surface};
 use crate::iges::{Entity, EntityView, EntryNumber};
 use crate::math::{Affine, Frame, Matrix2, Point3, Vector2, Vector3};
 use std::f64::consts::{PI, TAU};
@@ -23,11 +24,13 @@ pub(super) struct SurfaceRead {
     pub(super) parameters: Vec<ParameterMap>,
     /// Whether the normal by the file's parameters is against the model's.
     pub(super) turned: bool,
+    /// How far the surface is from the one that the file means; `None` where it is that.
+    pub(super) off: Option<f64>,
 }
 
 impl SurfaceRead {
     fn new(surface: Surface) -> Self {
-        Self { surface, bounds: None, parameters: vec![ParameterMap::identity()], turned: false }
+        Self { surface, bounds: None, parameters: vec![ParameterMap::identity()], turned: false, off: None }
     }
 
     fn placed(self, map: &Affine) -> Result<Self, ReadError> {
@@ -41,7 +44,7 @@ impl SurfaceRead {
         let turned = self.turned ^ (mirrored && !self.surface.image_turns_normal(map));
         let parameters = self.parameters.iter().map(|own| composed(&moved, own)).collect();
         let bounds = self.bounds.map(|bounds| rectangle(&moved, bounds));
-        Ok(Self { surface, bounds, parameters, turned })
+        Ok(Self { surface, bounds, parameters, turned, off: self.off })
     }
 }
 
@@ -87,7 +90,7 @@ fn read_at(
             let (surface, bounds) = spline::surface(view.fields())?;
             SurfaceRead { bounds: Some(bounds), ..SurfaceRead::new(Surface::Nurbs(surface)) }
         }
-        Entity::RuledSurface => ruled(scope, &view)?,
+        Entity::RuledSurface => ruled_surface(scope, &view)?,
         Entity::SurfaceOfRevolution => revolution(scope, &view)?,
         Entity::TabulatedCylinder => tabulated(scope, &view)?,
         Entity::OffsetSurface => offset(scope, &view, depth)?,
@@ -118,31 +121,16 @@ fn plane(view: &EntityView<'_>) -> Result<SurfaceRead, ReadError> {
     Ok(SurfaceRead { parameters: Vec::new(), ..SurfaceRead::new(Surface::Plane(frame)) })
 }
 
-fn ruled(scope: &Scope<'_>, view: &EntityView<'_>) -> Result<SurfaceRead, ReadError> {
+fn ruled_surface(scope: &Scope<'_>, view: &EntityView<'_>) -> Result<SurfaceRead, ReadError> {
     let side = |field: &'static str| {
         let number = view.fields().pointer(field)?;
         curve::read(scope, number, &Affine::identity()).map_err(|e| in_entity(scope, field, number, e))
     };
     let (first, second) = (side("first")?, side("second")?);
-    if view.instance().entry().form == 0 && !(runs_evenly(&first.curve) && runs_evenly(&second.curve)) {
-        return Err(ReadError::KindNotReadYet("a ruled surface of equal arc length"));
-    }
-    let exact = |piece: &Piece| Ok::<_, ToNurbsError>(piece.curve.to_nurbs(piece.range)?);
-    let (first, mut second) = (exact(&first)?, exact(&second)?);
-    if view.fields().integer("reversed")? == 1 {
-        second = second.reversed();
-    }
-    let surface = NurbsSurface::ruled(&first, &second).map_err(|error| match error {
-        JoinError::Knots(error) => error.into(),
-        JoinError::Net(error) => error.into(),
-        JoinError::Nothing => ReadError::Empty("curves"),
-    })?;
-    Ok(whole(surface))
-}
-
-/// Whether equal steps of the parameter are equal lengths.
-fn runs_evenly(curve: &Curve) -> bool {
-    matches!(curve, Curve::Line { .. } | Curve::Circle { .. })
+    let reversed = view.fields().integer("reversed")? == 1;
+    let pace = if view.instance().entry().form == 1 { Pace::Parameter } else { Pace::Length };
+    let (surface, off) = ruled::ruled([&first, &second], reversed, pace, scope.resolution)?;
+    Ok(SurfaceRead { off, ..whole(surface) })
 }
 
 fn revolution(scope: &Scope<'_>, view: &EntityView<'_>) -> Result<SurfaceRead, ReadError> {
@@ -162,7 +150,9 @@ fn revolution(scope: &Scope<'_>, view: &EntityView<'_>) -> Result<SurfaceRead, R
     if !(way > 0.0 && way.is_finite()) {
         return Err(ReadError::EmptyRange { from, to });
     }
-    let bounds = ((from, from + way.min(TAU)), profile.range);
+    // Six digits of a whole turn are one.
+    let way = if way > TAU - TURN_ROUNDED { TAU } else { way };
+    let bounds = ((from, from + way), profile.range);
     // The file counts along the profile first, the model round the axis.
     let swap = ParameterMap { linear: Matrix2::new(0.0, 1.0, 1.0, 0.0), translation: Vector2::zeros() };
     Ok(SurfaceRead {
@@ -170,8 +160,12 @@ fn revolution(scope: &Scope<'_>, view: &EntityView<'_>) -> Result<SurfaceRead, R
         bounds: Some(bounds),
         parameters: vec![swap],
         turned: true,
+        off: None,
     })
 }
+
+/// Angle that a whole turn may lack.
+const TURN_ROUNDED: f64 = 1e-5;
 
 fn tabulated(scope: &Scope<'_>, view: &EntityView<'_>) -> Result<SurfaceRead, ReadError> {
     let number = view.fields().pointer("directrix")?;
@@ -189,6 +183,7 @@ fn tabulated(scope: &Scope<'_>, view: &EntityView<'_>) -> Result<SurfaceRead, Re
         bounds: Some(((start, end), (0.0, 1.0))),
         parameters: vec![unit, ParameterMap::identity()],
         turned: false,
+        off: None,
     })
 }
 

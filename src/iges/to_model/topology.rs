@@ -215,7 +215,7 @@ impl Builder<'_, '_> {
             return known.clone();
         }
         let found = match surface::read(&self.scope, number, &shared.within) {
-            Ok(read) => (self.push_surface(number, Carried::Read(read.surface.clone())), Some(read)),
+            Ok(read) => (self.push_read(number, &read), Some(read)),
             Err(error) => {
                 self.report_geometry(number, user, &error);
                 (self.push_unread(number, &error), None)

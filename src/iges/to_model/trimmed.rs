@@ -13,7 +13,6 @@ use super::spline::Rectangle;
 use super::surface::{self, SurfaceRead};
 use super::{natural, orient, pcurve};
 use crate::brep::{EdgeId, FaceId, LoopId, ShellId, VertexId};
-use crate::geometry::Carried;
 use crate::iges::{Entity, EntryNumber, Instance};
 use crate::math::{Affine, Point3};
 use crate::model::Attributes;
@@ -116,7 +115,7 @@ impl Builder<'_, '_> {
         shell: ShellId,
         attributes: Attributes,
     ) -> FaceId {
-        let surface = self.push_surface(bounds.surface, Carried::Read(read.surface.clone()));
+        let surface = self.push_read(bounds.surface, read);
         let face = self.push_face(number, on_surface(surface, !read.turned, shell), attributes);
         let mut draft = Draft { face, loops: Vec::new(), corners: Corners::default(), edges: Vec::new() };
         let built = self.loops(&mut draft, bounds, read, within);
@@ -166,6 +165,7 @@ impl Builder<'_, '_> {
                 None => {
                     let ends = [side.piece.start(), side.piece.end()]
                         .map(|point| self.corner(&mut draft.corners, number, point, tolerance));
+                    let ends = self.ends(number, &side.piece, ends);
                     self.push_piece(number, &side.piece, ends)
                 }
             };
@@ -205,7 +205,8 @@ impl Builder<'_, '_> {
             let (edge, on, forward) = match twin {
                 Some((edge, of)) => (edge, of.piece.clone(), !of.forward),
                 None => {
-                    let ends = self.ends(bit, ends);
+                    let ends = if bit.forward { ends } else { [ends[1], ends[0]] };
+                    let ends = self.ends(bit.number, &bit.piece, ends);
                     let edge = self.push_piece(bit.number, &bit.piece, ends);
                     if closed {
                         draft.edges.push((edge, (*bit).clone()));
@@ -220,13 +221,19 @@ impl Builder<'_, '_> {
         Ok(())
     }
 
-    /// Vertices at both ends of a piece, as its curve runs. One that comes back to where it began, but for a gap, has two.
-    fn ends(&mut self, bit: &Bit, [from, to]: [VertexId; 2]) -> [VertexId; 2] {
-        let [start, end] = if bit.forward { [from, to] } else { [to, from] };
-        if start == end && bit.piece.curve.period().is_none() {
-            return [start, self.push_vertex(origin(bit.number), bit.piece.end())];
+    /// Vertices at both ends of a piece, as its curve runs. One that comes back to where it began, but for a gap, has
+    /// two.
+    fn ends(&mut self, number: EntryNumber, piece: &Piece, [start, end]: [VertexId; 2]) -> [VertexId; 2] {
+        if start != end || piece.curve.period().is_some() {
+            return [start, end];
         }
-        [start, end]
+        let shared = self.brep.vertices[start].point;
+        let [from, to] = [piece.start(), piece.end()];
+        if (shared - from).norm() <= (shared - to).norm() {
+            [start, self.push_vertex(origin(number), to)]
+        } else {
+            [self.push_vertex(origin(number), from), end]
+        }
     }
 
     fn own_pcurve(
