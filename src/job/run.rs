@@ -81,6 +81,7 @@ fn run_part(job: &Job, part: &Part, mode: Mode, stamp: &Stamp) -> PartReport {
 
 fn go(job: &Job, part: &Part, mode: Mode, stamp: &Stamp, report: &mut PartReport) -> Result<(), PartError> {
     let mut read = Read::file(&part.input)?;
+    read.refuse_other_format(&part.output)?;
     let result = changed_bytes(job, part, &mut read, stamp, report);
     report.take_diagnostics(&read.diagnostics, read.document.source());
     let result = result?;

@@ -71,9 +71,7 @@ mod tests {
 
     #[test]
     fn a_helix_is_met_within_the_tolerance() {
-        let helix = |t: f64| {
-            (Point3::new(t.cos(), t.sin(), t), Vector3::new(-t.sin(), t.cos(), 1.0))
-        };
+        let helix = |t: f64| (Point3::new(t.cos(), t.sin(), t), Vector3::new(-t.sin(), t.cos(), 1.0));
         let (curve, off) = hermite(&helix, vec![0.0, 6.0], 1e-7, "a helix").expect("a curve");
         assert!(off <= 1e-7);
         for k in 0..=1000 {

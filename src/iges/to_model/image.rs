@@ -62,4 +62,3 @@ fn at(surface: &Surface, flat: &Piece2d, t: f64) -> Jet {
     let on = surface.derivatives(p.x, p.y);
     (on.point, on.du * d.x + on.dv * d.y)
 }
-

@@ -189,10 +189,7 @@ mod tests {
 
     fn arc(radius: f64, z: f64, angle: f64) -> Piece {
         let frame = Frame::from_axis(Point3::new(0.0, 0.0, z), Vector3::z(), Some(Vector3::x()));
-        Piece {
-            curve: Curve::Circle { frame: frame.expect("a frame"), radius },
-            range: (0.0, angle),
-        }
+        Piece { curve: Curve::Circle { frame: frame.expect("a frame"), radius }, range: (0.0, angle) }
     }
 
     /// A parabola `(t, t^2, z)` of degree 2, over `[0, 1]`.
@@ -248,7 +245,10 @@ mod tests {
     #[test]
     fn by_length_and_by_parameter_are_different_surfaces() {
         let line = Piece {
-            curve: Curve::Line { origin: Point3::new(1.0, 1.0, 1.0), direction: Vector3::new(-1.0, -1.0, 0.0) },
+            curve: Curve::Line {
+                origin: Point3::new(1.0, 1.0, 1.0),
+                direction: Vector3::new(-1.0, -1.0, 0.0),
+            },
             range: (0.0, 1.0),
         };
         let parabola = parabola(0.0);
