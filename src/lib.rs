@@ -8,10 +8,12 @@
 //! What this crate does not do: repair files, guess units, renumber instances, or write a file anew
 //! when a patch will do.
 
+pub mod batch;
 pub mod brep;
 pub mod cli;
 pub mod cloud;
 pub mod diagnostic;
+pub mod diff;
 pub mod document;
 pub mod exchange;
 pub mod geometry;
@@ -23,6 +25,8 @@ pub mod model;
 pub mod number;
 pub mod ops;
 pub mod picture;
+pub mod publish;
+pub mod regress;
 pub mod source;
 pub mod step;
 pub mod units;

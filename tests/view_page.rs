@@ -1,4 +1,4 @@
-//! The page of `view` in a browser: a real click on a face, on an edge, and a body hidden by the tree.
+//! Pages in a browser: of a part (a real click on a face, on an edge, a body hidden by the tree), of a run, of a difference.
 //!
 //! Needs `chromium` and `chromedriver`; without them the test passes over it, unless
 //! `RESURF_REQUIRE_VALIDATORS=1`.
@@ -210,4 +210,94 @@ fn a_click_reads_the_face_or_the_edge_below_it() {
     browser.click_on("label", "bracket");
     browser.click(middle[0], middle[1]);
     assert_eq!(browser.picked(), "Click a face or an edge.");
+}
+
+/// Runs the program in a folder and holds that it ends with a code.
+fn run(folder: &Path, arguments: &[&str], code: i32) {
+    let program = Command::new(env!("CARGO_BIN_EXE_resurf")).args(arguments).current_dir(folder).output();
+    let output = program.expect("the program runs");
+    assert_eq!(output.status.code(), Some(code), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// A folder with the door, half of the door, and a job that scales them.
+fn a_night() -> tempfile::TempDir {
+    let door = std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/door/door.step"))
+        .expect("a sample");
+    let job = "version = 1\nname = \"a <b> night\"\ninputs = [\"*.step\"]\noutput = \"out/{stem}.{ext}\"\n\
+        [[operation]]\nkind = \"constrained_scale\"\nfactors = [1.1, 1.2, 1.25]\n";
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("job.toml"), job).expect("written");
+    std::fs::write(folder.path().join("door.step"), &door).expect("written");
+    std::fs::write(folder.path().join("half.step"), &door[..door.len() / 2]).expect("written");
+    folder
+}
+
+#[test]
+fn the_page_of_a_run_shows_what_failed_and_what_changed() {
+    let folder = a_night();
+    run(folder.path(), &["run", "job.toml", "--html", "night.html"], 1);
+    let page = folder.path().join("night.html");
+    let html = std::fs::read_to_string(&page).expect("a page");
+    assert!(!html.contains("http://") && !html.contains("https://"), "the page fetches nothing");
+    assert!(html.contains("a &lt;b&gt; night") && !html.contains("a <b> night"));
+    // A second run draws nothing again and leaves the same pictures.
+    run(folder.path(), &["run", "job.toml", "--html", "night.html"], 1);
+    let pictures = |html: &str| {
+        html.split("base64,").skip(1).map(|rest| rest.split('"').next().map(str::len)).collect::<Vec<_>>()
+    };
+    assert_eq!(pictures(&html), pictures(&std::fs::read_to_string(&page).expect("a page")));
+
+    let Some(browser) = Browser::start() else { return };
+    browser.command("/url", &json!({ "url": format!("file://{}", page.display()) }));
+    let text = |script: &str| browser.script(script).as_str().unwrap_or_default().to_owned();
+    let summary = text("return document.querySelector('p').textContent;");
+    assert!(summary.starts_with("2 parts: 1 done, 1 failed, 2 unchanged"), "{summary}");
+    // What failed is open, with its reason; the other opens by a click, with pictures that are some.
+    let open = text(
+        "return [...document.querySelectorAll('tbody.open td:first-child')].map(e => e.textContent).join();",
+    );
+    assert!(open.starts_with("half.step"), "{open}");
+    let why = text("return document.querySelector('tbody.open .why').textContent;");
+    assert!(why.contains("the file ends inside a record"), "{why}");
+    browser.click_on("td", "door.step");
+    let widths = browser.script(
+        "return [...document.querySelectorAll('tbody.done img')].map(e => e.offsetWidth && e.naturalWidth);",
+    );
+    assert_eq!(widths, json!([840, 420]));
+    let link = text("return document.querySelector('tbody.done a').href;");
+    browser.click_on("button", "failed (1)");
+    assert_eq!(
+        text(
+            "return [...document.querySelectorAll('tbody')].filter(e => e.offsetHeight > 0).map(e => e.className).join();"
+        ),
+        "failed open"
+    );
+    browser.command("/url", &json!({ "url": link }));
+    assert!(text("return document.getElementById('legend').textContent;").contains("1 changed"));
+}
+
+#[test]
+fn the_page_of_a_difference_is_red_where_it_is_greatest() {
+    let folder = a_night();
+    run(folder.path(), &["run", "job.toml"], 1);
+    run(folder.path(), &["diff", "door.step", "out/door.step", "--html", "d.html"], 1);
+    let Some(browser) = Browser::start() else { return };
+    browser.command("/url", &json!({ "url": format!("file://{}", folder.path().join("d.html").display()) }));
+    browser.click_on("button", "Top");
+    // Share of the coloured pixels that are reddish, in the left and in the right third of the window.
+    let reds = "const c = document.getElementById('canvas'), g = document.createElement('canvas').getContext('2d');\
+        g.canvas.width = c.width; g.canvas.height = c.height; g.drawImage(c, 0, 0);\
+        const red = (from, to) => { let n = 0; const d = g.getImageData(from, 0, to - from, c.height).data;\
+        for (let k = 0; k < d.length; k += 4) if (d[k] > 90 && d[k] > 2 * d[k + 1] && d[k] > 2 * d[k + 2]) n++; return n; };\
+        const w = Math.floor(c.width / 3); return [red(0, w), red(c.width - w, c.width)];";
+    browser.script("draw();");
+    let counts = browser.script(reds);
+    let [left, right] = [0, 1].map(|k| counts[k].as_u64().expect("a count"));
+    // Scaled about the origin, the door's far end moved most.
+    assert!(right > 200 && right > 2 * left, "{counts}");
+    browser.click_on("button", "Colours");
+    browser.script("draw();");
+    // Its own colour is red all over.
+    let own = browser.script(reds);
+    assert!(own[0].as_u64() > Some(10 * left), "{own}");
 }

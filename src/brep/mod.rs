@@ -11,7 +11,9 @@ pub mod parameter_loop;
 
 use crate::geometry::{Carried, Curve, Curve2d, Surface};
 use crate::math::Point3;
-pub use edge_samples::{EdgePoint, EdgeRange, EdgeSampling, edge_range, inner_breaks, sample_edge};
+pub use edge_samples::{
+    EdgePoint, EdgeRange, EdgeSampling, edge_range, inner_breaks, sample_curve, sample_edge,
+};
 pub use id::{Arena, BodyId, CoedgeId, CurveId, EdgeId, FaceId, LoopId, ShellId, SurfaceId, VertexId};
 pub use parameter_loop::{
     LoopPoint, LoopSampling, ParameterLoop, ParameterLoopError, parameter_loops, parameter_loops_with,

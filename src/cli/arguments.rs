@@ -1,11 +1,14 @@
 //! The command line's words.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::batch::limits::MemorySize;
+use crate::batch::{Limits, Share};
 use crate::job::detail_file::CurveSelector;
-use crate::job::file::ValidatorName;
+use crate::job::file::{Seconds, ValidatorName};
 use crate::job::paste_file::RegionSetting;
 use crate::job::selector::Selector;
 
@@ -33,8 +36,15 @@ pub enum Command {
     Inspect(InspectArguments),
     /// Check parts, and ask other programs about them
     Check(CheckArguments),
+    /// Tell how two parts differ, by their geometry and structure
+    Diff(DiffArguments),
     /// Write one self-contained HTML page that shows a part
     View(ViewArguments),
+    /// Measure the parts and jobs of a folder, and compare with a baseline
+    Regress(RegressArguments),
+    /// Put reports together
+    #[command(subcommand)]
+    Report(ReportCommand),
     /// Keep features for pastes without their parts
     #[command(subcommand)]
     Feature(FeatureCommand),
@@ -43,6 +53,19 @@ pub enum Command {
         /// Which one
         of: SchemaOf,
     },
+    /// Print a script that completes commands and flags
+    Completions {
+        /// For this shell
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page, or write one for each command into a folder
+    Man {
+        /// The folder
+        folder: Option<PathBuf>,
+    },
+    /// Do one part of a run; started by `run`, with its order on standard input
+    #[command(hide = true)]
+    Worker,
 }
 
 /// Arguments of `run`.
@@ -60,6 +83,56 @@ pub struct RunArguments {
     /// Write the report as JSON to a file as well
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
+    /// Write the report as JUnit XML
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
+    /// Write the report as one HTML page with pictures, and a page in three dimensions for each part into a folder beside it
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
+    /// Do parts again that have not changed
+    #[arg(long)]
+    pub fresh: bool,
+    /// Do one share of the parts: I of N, or that of an array job's index (Slurm, Kubernetes, AWS Batch)
+    #[arg(long, value_name = "I/N|auto/N")]
+    pub shard: Option<Share>,
+    /// What the run may use
+    #[command(flatten)]
+    pub limits: LimitArguments,
+}
+
+/// What a run over parts may use.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct LimitArguments {
+    /// Parts at a time; left out, one for each processor
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub jobs: Option<u16>,
+    /// Memory for all parts at a time together, such as `8 GB`; left out, three quarters of the machine's
+    #[arg(long, value_name = "SIZE")]
+    pub memory: Option<MemorySize>,
+    /// Seconds that one part may take
+    #[arg(long, value_name = "SECONDS", default_value = "3600", value_parser = seconds)]
+    pub timeout: f64,
+    /// Tell each step of each part
+    #[arg(short, long)]
+    pub verbose: bool,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds: f64 = text.parse().map_err(|_| format!("`{text}` is no number of seconds"))?;
+    Seconds::try_from(seconds).map(|seconds| seconds.0)
+}
+
+impl LimitArguments {
+    /// The limits, with the machine's where nothing is said.
+    #[must_use]
+    pub fn limits(&self) -> Limits {
+        let machine = Limits::of_machine();
+        Limits {
+            jobs: self.jobs.map_or(machine.jobs, usize::from),
+            memory: self.memory.map_or(machine.memory, |size| Some(size.0)),
+            time: Duration::from_secs_f64(self.timeout),
+        }
+    }
 }
 
 /// Arguments of `convert`.
@@ -117,6 +190,39 @@ pub struct InspectArguments {
     pub measure: bool,
 }
 
+/// Arguments of `diff`.
+#[derive(Debug, Args)]
+pub struct DiffArguments {
+    /// First part
+    #[arg(value_name = "A")]
+    pub before: PathBuf,
+    /// Second part
+    #[arg(value_name = "B")]
+    pub after: PathBuf,
+    /// Distance within which points count as one: a number in the first file's units, or with a unit; left out, the greatest
+    /// of the files' uncertainties and a millionth of the size
+    #[arg(long, value_name = "LENGTH")]
+    pub tolerance: Option<crate::units::Length>,
+    /// Look at one side only
+    #[arg(long)]
+    pub only: Option<Aspect>,
+    /// Write JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Write a page that shows the second part with the distances as colours
+    #[arg(long, value_name = "PAGE")]
+    pub html: Option<PathBuf>,
+}
+
+/// What `diff` looks at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Aspect {
+    /// Faces and free curves
+    Geometry,
+    /// Products, names, looks, units, annotations
+    Structure,
+}
+
 /// Arguments of `view`.
 #[derive(Debug, Args)]
 pub struct ViewArguments {
@@ -129,6 +235,62 @@ pub struct ViewArguments {
     /// Greatest distance of the triangles from the part: a number in file units, or with a unit
     #[arg(long, value_name = "LENGTH")]
     pub tolerance: Option<crate::units::Length>,
+}
+
+/// Arguments of `regress`.
+#[derive(Debug, Args)]
+pub struct RegressArguments {
+    /// Folder with parts and jobs
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+    /// What they measured before, in TOML
+    #[arg(long, value_name = "FILE")]
+    pub baseline: PathBuf,
+    /// Make what they measure now the baseline
+    #[arg(long)]
+    pub update: bool,
+    /// Ask these programs about every part
+    #[arg(long, value_delimiter = ',', value_name = "PROGRAMS")]
+    pub with: Vec<ValidatorName>,
+    /// Write JUnit XML
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
+    /// Write JSON
+    #[arg(long)]
+    pub json: bool,
+    /// What it may use
+    #[command(flatten)]
+    pub limits: LimitArguments,
+}
+
+/// The commands of `report`.
+#[derive(Debug, Subcommand)]
+pub enum ReportCommand {
+    /// Put the reports of the shares of a run together
+    Merge(MergeArguments),
+}
+
+/// Arguments of `report merge`.
+#[derive(Debug, Args)]
+pub struct MergeArguments {
+    /// Reports of all shares, JSON
+    #[arg(required = true, value_name = "REPORT")]
+    pub reports: Vec<PathBuf>,
+    /// Report to write, JSON
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Write JUnit XML
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
+    /// Write the report as one HTML page with pictures, and a page in three dimensions for each part into a folder beside it
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
+    /// Write the report as JSON to standard output
+    #[arg(long)]
+    pub json: bool,
+    /// What drawing the pictures may use
+    #[command(flatten)]
+    pub limits: LimitArguments,
 }
 
 /// The commands of `feature`.

@@ -6,17 +6,22 @@
 mod arguments;
 mod check;
 mod convert;
+mod diff;
 pub mod exit_code;
 mod feature;
 mod inspect;
+mod manual;
 mod print;
+mod progress;
+mod regress;
+mod report;
 mod run;
 mod show;
 mod view;
 
 use clap::Parser;
 
-use arguments::{Arguments, Command, FeatureCommand, SchemaOf};
+use arguments::{Arguments, Command, FeatureCommand, ReportCommand, SchemaOf};
 use print::Printer;
 
 /// Runs the program with the process's arguments and gives its exit code.
@@ -37,6 +42,9 @@ pub fn main() -> u8 {
         Command::Convert(arguments) => convert::convert(&arguments, &mut printer),
         Command::Inspect(arguments) => inspect::inspect(&arguments, &mut printer),
         Command::Check(arguments) => check::check(&arguments, &mut printer),
+        Command::Diff(arguments) => diff::diff(&arguments, &mut printer),
+        Command::Regress(arguments) => regress::regress(&arguments, &mut printer),
+        Command::Report(ReportCommand::Merge(arguments)) => report::merge(&arguments, &mut printer),
         Command::View(arguments) => view::view(&arguments, &mut printer),
         Command::Feature(FeatureCommand::Export(arguments)) => feature::export(&arguments, &mut printer),
         Command::Feature(FeatureCommand::Detail(arguments)) => feature::detail(&arguments, &mut printer),
@@ -49,6 +57,9 @@ pub fn main() -> u8 {
             });
             exit_code::DONE
         }
+        Command::Completions { shell } => manual::completions(shell, &mut printer),
+        Command::Man { folder } => manual::pages(folder.as_deref(), &mut printer),
+        Command::Worker => crate::batch::worker::work(std::io::stdin(), &mut std::io::stdout()),
     };
     printer.code().unwrap_or(code)
 }

@@ -5,103 +5,147 @@ use std::path::Path;
 use super::arguments::RunArguments;
 use super::exit_code;
 use super::print::{Place, Printer};
-use super::show;
+use super::progress::Display;
+use super::report::Forms;
+use crate::batch::run::Memory;
+use crate::batch::task::JobError;
+use crate::batch::{self, Interrupt, JobText, Run};
 use crate::diagnostic::Severity;
 use crate::job::judge::first_missing;
-use crate::job::output::Staged;
 use crate::job::plan::{self, Part};
-use crate::job::read::{JobFileError, Syntax, read};
-use crate::job::report::{PartReport, Report, Status, WritePath};
+use crate::job::read::JobFileError;
+use crate::job::report::{PartReport, Report, WritePath};
 use crate::job::run::Mode;
-use crate::job::{self, Job};
 
 /// Runs a job and gives the exit code.
 pub fn run(arguments: &RunArguments, printer: &mut Printer) -> u8 {
-    let (job, parts) = match planned(&arguments.job, printer) {
-        Ok(planned) => planned,
-        Err(code) => return code,
+    match done(arguments, printer) {
+        Ok((report, interrupt)) => {
+            summary(printer, &report.parts);
+            let written = write_report(arguments, &report, &interrupt, printer);
+            if written == exit_code::DONE { report.code } else { written }
+        }
+        Err(code) => code,
+    }
+}
+
+/// The report of the run with what may end it, or the exit code after a message.
+fn done(arguments: &RunArguments, printer: &mut Printer) -> Result<(Report, Interrupt), u8> {
+    let (text, parts) = planned(&arguments.job, printer)?;
+    let job = text.job().map_err(|error| show_job_error(printer, &arguments.job, &text, &error))?;
+    let mut refuse = |message: &str, code: u8| {
+        printer.message(Severity::Error, message);
+        code
     };
+    let shard = arguments.shard.map(batch::Share::resolve).transpose();
+    let shard = shard.map_err(|message| refuse(&message, exit_code::USAGE))?;
     if !arguments.dry_run
         && let Some(error) = first_missing(&job.validate)
     {
-        printer.message(Severity::Error, &error.to_string());
-        return exit_code::VALIDATOR_MISSING;
+        return Err(refuse(&error.to_string(), exit_code::VALIDATOR_MISSING));
     }
+    let interrupt = Interrupt::listen().map_err(|error| refuse(&error.to_string(), exit_code::IO))?;
     let mode = if arguments.dry_run { Mode::DryRun } else { Mode::Write };
-    let report = job::run::run(&job, &parts, mode, &mut |part| finished(printer, part, mode));
-    let written = write_report(arguments, &report, printer);
-    if written == exit_code::DONE { report.code } else { written }
+    let run = Run {
+        job: &text,
+        parts: &parts,
+        mode,
+        limits: arguments.limits.limits(),
+        shard,
+        memory: if arguments.fresh { Memory::Fresh } else { Memory::Kept },
+    };
+    let line = if arguments.dry_run { planned_line } else { done_line };
+    let mut display = Display::new(printer, arguments.limits.verbose, line);
+    let report = batch::run(&run, &interrupt, &mut |progress| display.show(progress));
+    display.end();
+    let report = report.map_err(|error| show_job_error(printer, &arguments.job, &text, &error))?;
+    Ok((report, interrupt))
 }
 
-/// The job and its parts, or the exit code after a message.
-fn planned(path: &Path, printer: &mut Printer) -> Result<(Job, Vec<Part>), u8> {
+/// The job's text and its parts, or the exit code after a message.
+fn planned(path: &Path, printer: &mut Printer) -> Result<(JobText, Vec<Part>), u8> {
     let name = path.to_string_lossy();
     if path.is_dir() {
         printer
             .message(Severity::Error, &format!("job file {name} is a folder; expected a TOML or JSON file"));
         return Err(exit_code::USAGE);
     }
-    let text = std::fs::read_to_string(path).map_err(|error| {
+    let text = JobText::file(path).map_err(|error| {
         printer.message(Severity::Error, &format!("job file {name}: {error}"));
         exit_code::USAGE
     })?;
-    let json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
-    let mut job = read(&text, if json { Syntax::Json } else { Syntax::Toml }).map_err(|error| {
-        show_job_error(printer, &name, &text, &error);
-        exit_code::USAGE
-    })?;
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let planned = plan::resolve(&mut job, folder).and_then(|()| plan::parts(&job, folder));
-    let parts = planned.map_err(|error| {
-        printer.message(Severity::Error, &format!("{name}: {error}"));
-        exit_code::USAGE
-    })?;
-    Ok((job, parts))
-}
-
-fn show_job_error(printer: &mut Printer, path: &str, text: &str, error: &JobFileError) {
-    let place = Place { path, bytes: text.as_bytes(), span: error.span.clone() };
-    printer.placed(Severity::Error, "", &error.to_string(), &place);
-}
-
-fn finished(printer: &mut Printer, part: &PartReport, mode: Mode) {
-    show::warnings(printer, part);
-    if let Some(failure) = &part.failure {
-        show::failure(printer, &part.input, failure);
-        return;
+    let parts = text.job().and_then(|job| Ok(plan::parts(&job, &text.folder)?));
+    match parts {
+        Ok(parts) => Ok((text, parts)),
+        Err(error) => Err(show_job_error(printer, path, &text, &error)),
     }
+}
+
+/// Says what is wrong with a job file, and gives the exit code.
+fn show_job_error(printer: &mut Printer, path: &Path, job: &JobText, error: &JobError) -> u8 {
+    let path = path.to_string_lossy();
+    match error {
+        JobError::Read(JobFileError { span, .. }) => {
+            let place = Place { path: &path, bytes: job.text.as_bytes(), span: span.clone() };
+            printer.placed(Severity::Error, "", &error.to_string(), &place);
+        }
+        JobError::Plan(error) => printer.message(Severity::Error, &format!("{path}: {error}")),
+    }
+    exit_code::USAGE
+}
+
+fn done_line(part: &PartReport) -> String {
+    if part.unchanged {
+        return format!("unchanged: {} -> {}", part.input, part.output);
+    }
+    line(part, &part.output)
+}
+
+fn planned_line(part: &PartReport) -> String {
+    line(part, "nothing written")
+}
+
+fn line(part: &PartReport, place: &str) -> String {
     let how = match part.write_path {
         Some(WritePath::Patched) => "patched",
         _ => "unchanged",
     };
-    let place = if mode == Mode::DryRun { "nothing written" } else { part.output.as_str() };
     let accepted: Vec<String> = part
         .validators
         .iter()
         .map(|verdict| format!(", accepted by {}", verdict.validator.as_str()))
         .collect();
-    let mark = if part.status == Status::Done { "done" } else { "failed" };
-    printer.line(&format!("{mark}: {} -> {place} ({how}{})", part.input, accepted.concat()));
+    format!("done: {} -> {place} ({how}{})", part.input, accepted.concat())
 }
 
-fn write_report(arguments: &RunArguments, report: &Report, printer: &mut Printer) -> u8 {
-    let mut text = match serde_json::to_string_pretty(report) {
-        Ok(text) => text,
-        Err(error) => {
-            printer.message(Severity::Error, &format!("the report cannot be written: {error}"));
-            return exit_code::INTERNAL;
-        }
+/// One line on a run of several parts, and on a run that had nothing to do.
+fn summary(printer: &mut Printer, parts: &[PartReport]) {
+    let unchanged = parts.iter().filter(|part| part.unchanged).count();
+    let failed = parts.iter().filter(|part| part.failure.is_some()).count();
+    if parts.len() < 2 && unchanged == 0 {
+        return;
+    }
+    let mut text = format!("{} parts: {} done, {failed} failed", parts.len(), parts.len() - failed);
+    if unchanged == parts.len() {
+        text += "; nothing has changed since the last run, and nothing was done";
+    } else if unchanged > 0 {
+        text += &format!("; {unchanged} unchanged since the last run");
+    }
+    printer.line(&text);
+}
+
+/// Writes the report in every form that is asked for.
+fn write_report(
+    arguments: &RunArguments,
+    report: &Report,
+    interrupt: &Interrupt,
+    printer: &mut Printer,
+) -> u8 {
+    let forms = Forms {
+        report: arguments.report.as_deref(),
+        junit: arguments.junit.as_deref(),
+        html: arguments.html.as_deref().filter(|_| !arguments.dry_run),
+        json: arguments.json,
     };
-    text.push('\n');
-    if let Some(path) = &arguments.report {
-        let written = Staged::write(path, text.as_bytes()).and_then(Staged::commit);
-        if let Err(error) = written {
-            printer.message(Severity::Error, &format!("the report cannot be written: {error}"));
-            return exit_code::IO;
-        }
-    }
-    if arguments.json {
-        printer.data(&text);
-    }
-    exit_code::DONE
+    forms.write(report, &arguments.limits.limits(), interrupt, printer)
 }

@@ -3,7 +3,7 @@
 //! Gives the bytes inside, within limits that a hostile file cannot pass. Writes nothing compressed: what is
 //! written of such a file is plain text.
 
-use std::io::{Cursor, Read};
+use std::io::{Cursor, ErrorKind, Read};
 
 use super::Format;
 
@@ -38,6 +38,9 @@ pub enum CompressedError {
         /// The limit that was met.
         limit: u64,
     },
+    /// There is not enough memory for what comes out.
+    #[error("there is not enough memory to unfold it")]
+    OutOfMemory,
     /// The archive has no STEP file.
     #[error("the archive holds no file with the extension step, stp or p21")]
     NoMember,
@@ -56,9 +59,7 @@ pub enum CompressedError {
 /// # Errors
 /// [`CompressedError`] when it is damaged or too large.
 pub fn gunzip(bytes: &[u8]) -> Result<Vec<u8>, CompressedError> {
-    let damaged =
-        |error: std::io::Error| CompressedError::Damaged { format: Format::Gzip, reason: error.to_string() };
-    limited(flate2::read::MultiGzDecoder::new(bytes), bytes.len()).map_err(damaged)?
+    limited(flate2::read::MultiGzDecoder::new(bytes), bytes.len(), Format::Gzip)
 }
 
 /// The one STEP file inside a zip archive.
@@ -87,16 +88,20 @@ pub fn unzip(bytes: &[u8]) -> Result<Vec<u8>, CompressedError> {
         });
     };
     let member = archive.by_index(*at).map_err(|error| damaged(error.to_string()))?;
-    limited(member, bytes.len()).map_err(|error| damaged(error.to_string()))?
+    limited(member, bytes.len(), Format::Zip)
 }
 
 /// Reads to the end, or to the limit for a compressed size.
-fn limited(reader: impl Read, compressed: usize) -> std::io::Result<Result<Vec<u8>, CompressedError>> {
+fn limited(reader: impl Read, compressed: usize, format: Format) -> Result<Vec<u8>, CompressedError> {
     let grown = (compressed as u64).saturating_mul(MOST_GROWTH);
     let limit = grown.clamp(ALWAYS_ALLOWED, MOST_BYTES);
     let mut bytes = Vec::new();
-    reader.take(limit + 1).read_to_end(&mut bytes)?;
-    Ok(if bytes.len() as u64 > limit { Err(CompressedError::TooLarge { limit }) } else { Ok(bytes) })
+    match reader.take(limit + 1).read_to_end(&mut bytes) {
+        Ok(_) if bytes.len() as u64 > limit => Err(CompressedError::TooLarge { limit }),
+        Ok(_) => Ok(bytes),
+        Err(error) if error.kind() == ErrorKind::OutOfMemory => Err(CompressedError::OutOfMemory),
+        Err(error) => Err(CompressedError::Damaged { format, reason: error.to_string() }),
+    }
 }
 
 #[cfg(test)]

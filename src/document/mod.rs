@@ -107,6 +107,7 @@ impl OpenError {
             Self::Unknown => "document.unknown-format",
             Self::Empty => "document.empty",
             Self::TooLarge(_) | Self::Compressed(CompressedError::TooLarge { .. }) => "document.too-large",
+            Self::Compressed(CompressedError::OutOfMemory) => "resource.memory",
             Self::Compressed(_) => "document.bad-compression",
         }
     }

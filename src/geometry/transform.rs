@@ -8,6 +8,7 @@
 use super::nurbs::NurbsCurve2;
 use super::{Curve, Curve2d, Surface, Trimmed};
 use crate::math::{Affine, Frame, Matrix2, Point2, Vector2, Vector3, cofactor};
+use std::f64::consts::FRAC_PI_2;
 
 /// The affine image is not of a kind that the exchange formats know.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -147,6 +148,11 @@ fn similar_frame(map: &Affine, frame: &Frame, kind: &'static str) -> Result<(Fra
     Ok((frame.ok_or(NotRepresentable::Degenerate { kind })?, factor))
 }
 
+/// By how much a map makes lengths along a direction grow.
+fn growth_along(map: &Affine, direction: &Vector3<f64>) -> f64 {
+    map.vector(direction).norm() / direction.norm()
+}
+
 /// Whether a length is not above a bound, or not a number.
 fn vanishes(length: f64, bound: f64) -> bool {
     length.is_nan() || length <= bound
@@ -164,9 +170,14 @@ fn conic_image(
     let (ca, cb) = (map.vector(&frame.x) * a, map.vector(&frame.y) * b);
     let (sa, sb, ab) = (ca.norm_squared(), cb.norm_squared(), ca.dot(&cb));
     let perpendicular = ab.abs() <= SAME * (sa * sb).sqrt();
-    let shift = if perpendicular { 0.0 } else { 0.5 * (2.0 * ab).atan2(sa - sb) };
+    let mut shift = if perpendicular { 0.0 } else { 0.5 * (2.0 * ab).atan2(sa - sb) };
     let (sin, cos) = shift.sin_cos();
-    let (first, second) = (ca * cos + cb * sin, cb * cos - ca * sin);
+    let (mut first, mut second) = (ca * cos + cb * sin, cb * cos - ca * sin);
+    // Readers are known that take the greater semi-axis for the first and count angles from it, whatever the file says.
+    if a >= b && second.norm() > first.norm() * (1.0 + SAME) {
+        (first, second) = (second, -first);
+        shift += FRAC_PI_2;
+    }
     let (r1, r2) = (first.norm(), second.norm());
     if vanishes(r1.min(r2), SAME * map.linear.norm() * a.max(b)) {
         return Err(NotRepresentable::Degenerate { kind });
@@ -250,10 +261,12 @@ impl Surface {
                 })
             }
             Self::LinearExtrusion { curve, direction } => {
-                let direction = map.vector(direction);
-                if vanishes(direction.norm(), 0.0) {
+                let growth = growth_along(map, direction);
+                if vanishes(growth, 0.0) {
                     return Err(NotRepresentable::Degenerate { kind });
                 }
+                // The magnitude stays, since readers are known that do not look at it; the second parameter grows.
+                let direction = map.vector(direction) / growth;
                 Ok(Self::LinearExtrusion { curve: Box::new(curve.transformed(map)?), direction })
             }
             Self::Revolution { curve, frame } => {
@@ -333,9 +346,9 @@ impl Surface {
                 map.similarity_factor().ok_or(refused)?;
                 Ok(ParameterMap::stretch(turn, 1.0, zero))
             }
-            Self::LinearExtrusion { curve, .. } => {
+            Self::LinearExtrusion { curve, direction } => {
                 let shift = curve.transformed_with_shift(map)?.1;
-                Ok(ParameterMap::stretch(1.0, 1.0, Vector2::new(-shift, 0.0)))
+                Ok(ParameterMap::stretch(1.0, growth_along(map, direction), Vector2::new(-shift, 0.0)))
             }
             Self::Revolution { curve, frame } => {
                 axial_image(map, frame).ok_or(refused)?;

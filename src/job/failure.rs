@@ -3,6 +3,7 @@
 use super::operate::OperateError;
 use super::output::FileError;
 use super::report::Failure;
+use super::run::Stage;
 use crate::document::{CompressedError, LowerError, OpenError};
 use crate::validate::ValidateError;
 
@@ -58,9 +59,43 @@ pub enum PartError {
     /// The output cannot be written.
     #[error("the output cannot be written: {0}")]
     Output(FileError),
+    /// The part took longer than it may.
+    #[error("stopped after {seconds} s{}; more are given by `--timeout`", at(.stage))]
+    OutOfTime {
+        /// The limit.
+        seconds: f64,
+        /// What was being done.
+        stage: Option<Stage>,
+    },
+    /// The part needs more memory than it may have.
+    #[error("more memory is needed than {} MB{}; more is given by `--memory`", .bytes / 1_000_000, at(.stage))]
+    OutOfMemory {
+        /// The limit.
+        bytes: u64,
+        /// What was being done.
+        stage: Option<Stage>,
+    },
+    /// The process that worked on the part came to no end of its own.
+    #[error("internal error{}: please report it with this part and job: {words}", at(.stage))]
+    Crash {
+        /// What was being done.
+        stage: Option<Stage>,
+        /// How it ended, and its last words.
+        words: String,
+    },
+    /// No process can be started for the part.
+    #[error("no process can be started for the part: {0}")]
+    NotStarted(std::io::Error),
+    /// The run was interrupted before the part was done.
+    #[error("interrupted before the part was done; the same command goes on with it")]
+    Interrupted,
     /// The program met a bug of its own.
     #[error("internal error: please report it with this part and job")]
     Internal,
+}
+
+fn at(stage: &Option<Stage>) -> String {
+    stage.as_ref().map(|stage| format!(" while {stage}")).unwrap_or_default()
 }
 
 /// What to do about an input that cannot be read.
@@ -91,6 +126,8 @@ pub mod code {
     pub const IO: u8 = 7;
     /// A bug of the program.
     pub const INTERNAL: u8 = 70;
+    /// Interrupted by SIGINT, SIGTERM or SIGHUP: the same command goes on.
+    pub const INTERRUPTED: u8 = 130;
 }
 
 impl PartError {
@@ -99,10 +136,19 @@ impl PartError {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Input(error) if error.source.kind() == std::io::ErrorKind::NotFound => code::UNREADABLE,
-            Self::Input(_) | Self::Output(_) => code::IO,
-            Self::Open(OpenError::TooLarge(_) | OpenError::Compressed(CompressedError::TooLarge { .. })) => {
+            Self::Input(error) | Self::Output(error)
+                if error.source.kind() == std::io::ErrorKind::OutOfMemory =>
+            {
                 code::RESOURCE
             }
+            Self::Input(_) | Self::Output(_) | Self::NotStarted(_) => code::IO,
+            Self::OutOfTime { .. } | Self::OutOfMemory { .. } => code::RESOURCE,
+            Self::Crash { .. } => code::INTERNAL,
+            Self::Interrupted => code::INTERRUPTED,
+            Self::Open(
+                OpenError::TooLarge(_)
+                | OpenError::Compressed(CompressedError::TooLarge { .. } | CompressedError::OutOfMemory),
+            ) => code::RESOURCE,
             Self::Open(_) | Self::Damaged(_) | Self::Folder(_) | Self::NoFile(_) => code::UNREADABLE,
             Self::Setting { .. } => code::USAGE,
             Self::Operate(error) if error.code().starts_with("internal.") => code::INTERNAL,
@@ -132,6 +178,11 @@ impl PartError {
             Self::NoVerdict(ValidateError::Missing { .. }) => "validate.missing",
             Self::NoVerdict(_) => "validate.no-verdict",
             Self::Output(_) => "io.output",
+            Self::OutOfTime { .. } => "resource.time",
+            Self::OutOfMemory { .. } => "resource.memory",
+            Self::Crash { .. } => "internal.crash",
+            Self::NotStarted(_) => "io.process",
+            Self::Interrupted => "run.interrupted",
             Self::Internal => "internal.panic",
         };
         Failure { code: code.to_owned(), message: self.to_string() }

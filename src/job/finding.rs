@@ -1,7 +1,7 @@
 //! A fact that a part violates, in a form for reports, and the tolerance by which facts are judged.
 
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::brep::BodyId;
 use crate::diagnostic::Severity;
@@ -12,7 +12,7 @@ use crate::model::Model;
 const UNCERTAINTY_METRES: f64 = 1e-6;
 
 /// A fact that a part violates.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct OwnFinding {
     /// Stable name of the fact: `edge-off-surface`.
     pub code: String,

@@ -39,6 +39,12 @@ fn missing(validator: Validator) -> ValidateError {
     }
 }
 
+/// Where the program of a validator is.
+#[must_use]
+pub fn program_of(name: ValidatorName) -> Option<PathBuf> {
+    find(&Validator::from(name).program())
+}
+
 /// Where a program is, by its path or in `PATH`.
 fn find(program: &OsStr) -> Option<PathBuf> {
     let named = Path::new(program);

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::finding::tolerance;
 use crate::brep::mass_properties::{self, Quadrature};
@@ -13,7 +13,7 @@ use crate::math::Point3;
 use crate::model::{Context, Inventory, Model};
 
 /// What is inside a part.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Figures {
     /// Names of the application protocol, as the file writes them.
     pub schema: Vec<String>,
@@ -65,7 +65,7 @@ impl Figures {
 }
 
 /// Mass properties of one body of density one, in its file units.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct BodyMeasures {
     /// Its record.
     pub id: String,
@@ -96,7 +96,7 @@ pub struct BodyMeasures {
 }
 
 /// What one face measures, in its file units.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FaceMeasures {
     /// Its area.
     pub area: f64,
@@ -110,13 +110,20 @@ pub struct FaceMeasures {
     pub gap: f64,
 }
 
-/// Measures every body, in file order.
+/// Measures every body as exactly as makes sense, in file order.
 #[must_use]
 pub fn measure_bodies(model: &Model) -> Vec<BodyMeasures> {
-    model.brep.bodies.ids().map(|body| measure_body(model, body)).collect()
+    measure_bodies_by(model, Quadrature::exact)
 }
 
-fn measure_body(model: &Model, body: BodyId) -> BodyMeasures {
+/// Measures every body by the quadrature for its tolerance, in file order.
+#[must_use]
+pub fn measure_bodies_by(model: &Model, quadrature: fn(f64) -> Quadrature) -> Vec<BodyMeasures> {
+    let measured = |body| measure_body(model, body, &quadrature(tolerance(model, body)));
+    model.brep.bodies.ids().map(measured).collect()
+}
+
+fn measure_body(model: &Model, body: BodyId, quadrature: &Quadrature) -> BodyMeasures {
     let mut measures = BodyMeasures {
         id: model.origins.bodies[body].to_string(),
         volume: None,
@@ -128,7 +135,7 @@ fn measure_body(model: &Model, body: BodyId) -> BodyMeasures {
         gap: None,
         unknown: None,
     };
-    match mass_properties::of_body(&model.brep, body, &Quadrature::exact(tolerance(model, body))) {
+    match mass_properties::of_body(&model.brep, body, quadrature) {
         Ok(found) => {
             let solid = model.brep.bodies[body].kind == BodyKind::Solid;
             let centroid = if solid { found.centroid() } else { found.area_centroid() };

@@ -1,6 +1,6 @@
 //! The job: read the file, plan with every check before any data is touched, run over the parts, report.
 //!
-//! The only room that uses the file system. Prints nothing. INVARIANT: an output appears whole or not at
+//! Knows one part at a time; many are `batch`'s business. Prints nothing. INVARIANT: an output appears whole or not at
 //! all, an input is never touched, and the same input and job give the same bytes.
 
 mod clock;
@@ -8,14 +8,17 @@ pub mod contents;
 pub mod detail_file;
 pub mod detail_library;
 mod detail_operate;
+pub mod difference;
 pub mod failure;
 pub mod feature_file;
 pub mod file;
 pub mod finding;
 pub mod flagged;
+pub mod illustrate;
 mod json;
 pub mod judge;
 pub mod measure;
+pub mod measured;
 pub mod nearest;
 mod node;
 pub mod operate;
@@ -29,6 +32,8 @@ pub mod read;
 pub mod report;
 pub mod restate;
 pub mod run;
+pub mod scale_file;
+mod scale_operate;
 pub mod schema;
 pub mod select;
 mod select_curve;

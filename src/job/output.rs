@@ -61,12 +61,7 @@ impl Staged {
         let made = MadeFolders::make(folder).map_err(error)?;
         // The extension stays: other programs decide by it how to read the file.
         let extension = place.extension().map(|e| format!(".{}", e.to_string_lossy())).unwrap_or_default();
-        let mut temporary = tempfile::Builder::new()
-            .prefix(".resurf-")
-            .suffix(&extension)
-            .permissions(permissions())
-            .tempfile_in(folder)
-            .map_err(error)?;
+        let mut temporary = locked(folder, &extension).map_err(error)?;
         temporary.write_all(bytes).map_err(error)?;
         temporary.as_file().sync_all().map_err(error)?;
         Ok(Self { temporary, made, place: place.to_owned() })
@@ -90,6 +85,44 @@ impl Staged {
     }
 }
 
+/// Start of the names of files that do not stand in their place yet.
+const PREFIX: &str = ".resurf-";
+
+/// A new file with a lock that its process holds for as long as it lives: a file without one was left behind.
+fn locked(folder: &Path, extension: &str) -> std::io::Result<NamedTempFile> {
+    loop {
+        let temporary = tempfile::Builder::new()
+            .prefix(PREFIX)
+            .suffix(extension)
+            .permissions(permissions())
+            .tempfile_in(folder)?;
+        match temporary.as_file().lock() {
+            // Between making and locking it may have passed for one that was left behind.
+            Ok(()) if !temporary.path().exists() => {}
+            // A file system without locks is no reason not to write.
+            Ok(()) | Err(_) => return Ok(temporary),
+        }
+    }
+}
+
+/// Takes away files that processes left behind when they were killed before the files were in their place.
+pub fn sweep(folder: &Path) {
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    for entry in entries.filter_map(Result::ok) {
+        let left = entry.file_name().to_string_lossy().starts_with(PREFIX);
+        if !left || !entry.file_type().is_ok_and(|kind| kind.is_file()) {
+            continue;
+        }
+        // The lock is held until the name is gone: its maker sees that and takes another one.
+        if let Ok(file) = std::fs::File::open(entry.path())
+            && file.try_lock().is_ok()
+        {
+            // Somebody else may have been faster, which is as good.
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+}
+
 /// What a new file gets before the process's mask: a temporary file's own 0600 would stay with the output.
 #[cfg(unix)]
 fn permissions() -> std::fs::Permissions {
@@ -105,6 +138,19 @@ fn permissions() -> std::fs::Permissions {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_a_killed_process_left_is_swept_and_what_a_living_one_writes_is_not() {
+        let root = tempfile::tempdir().expect("a folder for the test");
+        let place = root.path().join("part.step");
+        let staged = Staged::write(&place, b"x").expect("written");
+        std::fs::write(root.path().join(".resurf-dead.step"), b"half").expect("written");
+        sweep(root.path());
+        assert!(staged.path().exists() && !root.path().join(".resurf-dead.step").exists());
+        staged.commit().expect("in its place");
+        sweep(root.path());
+        assert!(place.exists());
+    }
 
     #[test]
     fn folders_made_for_a_file_stay_only_with_it() {

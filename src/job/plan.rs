@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 
 use globset::{GlobBuilder, GlobMatcher};
+use serde::{Deserialize, Serialize};
 
 use super::Job;
 use super::file::Operation;
 use crate::document::Format;
 
 /// One part of a run.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Part {
     /// The file to read.
     pub input: PathBuf,
@@ -89,18 +90,7 @@ fn near(nearest: &Option<String>) -> String {
 /// [`PlanError::NoMatch`].
 pub fn resolve(job: &mut Job, folder: &Path) -> Result<(), PlanError> {
     for operation in &mut job.operation {
-        let file = match operation {
-            Operation::ConstrainedScale(_) | Operation::Simplify(_) => None,
-            Operation::DetailTransfer(transfer) => {
-                let source = &mut transfer.source;
-                source.file.as_mut().or(source.detail.as_mut())
-            }
-            Operation::FeaturePaste(paste) => {
-                let source = &mut paste.source;
-                source.file.as_mut().or(source.feature.as_mut())
-            }
-        };
-        let Some(file) = file else { continue };
+        let Some(file) = file_of(operation) else { continue };
         let path = folder.join(&*file);
         if !path.is_file() {
             let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
@@ -109,6 +99,28 @@ pub fn resolve(job: &mut Job, folder: &Path) -> Result<(), PlanError> {
         *file = path.to_string_lossy().into_owned();
     }
     Ok(())
+}
+
+/// The file that an operation reads beside its part.
+fn file_of(operation: &mut Operation) -> Option<&mut String> {
+    match operation {
+        Operation::ConstrainedScale(_) | Operation::Simplify(_) => None,
+        Operation::DetailTransfer(transfer) => {
+            let source = &mut transfer.source;
+            source.file.as_mut().or(source.detail.as_mut())
+        }
+        Operation::FeaturePaste(paste) => {
+            let source = &mut paste.source;
+            source.file.as_mut().or(source.feature.as_mut())
+        }
+    }
+}
+
+/// Files that the operations of a [resolved](resolve) job read beside its parts, in the order of the operations.
+#[must_use]
+pub fn referenced(job: &Job) -> Vec<PathBuf> {
+    let mut operations = job.operation.clone();
+    operations.iter_mut().filter_map(file_of).map(|file| PathBuf::from(&*file)).collect()
 }
 
 /// The parts of a job, sorted by path; `folder` is the job file's.

@@ -6,7 +6,7 @@ use super::file::Job;
 use super::node::{Entry, Node, NodeError, Value, decode};
 
 /// The two spellings of a job file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Syntax {
     /// TOML 1.0.
     Toml,
@@ -124,7 +124,8 @@ fn toml_value(value: &toml::Spanned<toml::de::DeValue<'_>>) -> Result<Node, JobF
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::job::file::{Hold, LengthSetting, Operation};
+    use crate::job::file::{LengthSetting, Operation};
+    use crate::job::scale_file::Hold;
     use crate::units::Length;
 
     const HEAD: &str = "version = 1\ninputs = [\"a.step\"]\noutput = \"b.step\"\n";

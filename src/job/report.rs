@@ -3,15 +3,16 @@
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
+use super::failure::{PartError, code};
 use super::own_check::OwnFinding;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::source::Source;
 use crate::validate::Verdict;
 
 /// The report of one run.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(title = "resurf report")]
 pub struct Report {
     /// Version of the report format: 1.
@@ -20,14 +21,59 @@ pub struct Report {
     pub program: String,
     /// Name of the job.
     pub job: String,
-    /// Exit code of the run: the gravest of the parts'.
+    /// Exit code of the run: of one part its own; of several, see [`Report::overall`].
     pub code: u8,
+    /// The share of the parts that this run did, when it did not do all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shard: Option<Shard>,
+    /// SHA-256 of the names and sizes of all parts of the job: equal for the shards of one run.
+    #[serde(default)]
+    pub plan: String,
+    /// Wall time of the run; of merged reports the sum.
+    #[serde(default)]
+    pub seconds: f64,
     /// Parts in order of their paths.
     pub parts: Vec<PartReport>,
 }
 
+/// One share of the parts of a job.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct Shard {
+    /// Which one, from 1.
+    pub index: usize,
+    /// How many there are.
+    pub count: usize,
+}
+
+impl Report {
+    /// Exit code of a run. One part's own code is the run's. Of several, a failed one makes it tell a scheduler
+    /// what would help: [`INTERRUPTED`](code::INTERRUPTED) when parts were not done, [`IO`](code::IO) when trying again may help
+    /// some part, [`RESOURCE`](code::RESOURCE) when more memory or time may, and else [`GATE`](code::GATE).
+    #[must_use]
+    pub fn overall(parts: &[PartReport]) -> u8 {
+        if let [only] = parts {
+            return only.code;
+        }
+        let helped = [code::INTERRUPTED, code::IO, code::RESOURCE];
+        let found = |wanted: &u8| parts.iter().any(|part| part.code == *wanted);
+        match helped.into_iter().find(found) {
+            Some(code) => code,
+            None if parts.iter().all(|part| part.code == code::DONE) => code::DONE,
+            None => code::GATE,
+        }
+    }
+
+    /// The report as text, with a line end.
+    ///
+    /// # Errors
+    /// When a number or a text has no JSON form.
+    pub fn text(&self) -> serde_json::Result<String> {
+        serde_json::to_string_pretty(self).map(|text| text + "\n")
+    }
+}
+
 /// Whether a part came through.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
     /// Written, checked and accepted; or planned, in a dry run.
@@ -37,7 +83,7 @@ pub enum Status {
 }
 
 /// How the output came to be.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum WritePath {
     /// The input's bytes.
@@ -47,7 +93,7 @@ pub enum WritePath {
 }
 
 /// What happened to one part.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PartReport {
     /// Path of the input as the job found it.
     pub input: String,
@@ -57,6 +103,12 @@ pub struct PartReport {
     pub status: Status,
     /// Exit code of this part alone.
     pub code: u8,
+    /// Nothing has changed since an earlier run, and this is what it reported.
+    #[serde(default)]
+    pub unchanged: bool,
+    /// SHA-256 of the input's bytes, where the run looked at them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sha256: Option<String>,
     /// Why it failed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<Failure>,
@@ -71,7 +123,7 @@ pub struct PartReport {
     /// Operations with what they measured.
     pub operations: Vec<OperationReport>,
     /// What became of statements about volume, area and centroid of changed bodies.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub restated: Vec<super::restate::Restated>,
     /// What the file cannot say any more, by code.
     pub losses: Vec<DiagnosticReport>,
@@ -98,7 +150,7 @@ pub struct PartReport {
 }
 
 /// Why a part failed.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Failure {
     /// Stable code.
     pub code: String,
@@ -107,7 +159,7 @@ pub struct Failure {
 }
 
 /// Edits on the input's bytes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Edits {
     /// Places where bytes were replaced.
     pub replaced: usize,
@@ -140,7 +192,7 @@ impl From<crate::exchange::EditCounts> for Edits {
 }
 
 /// One operation on one part.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct OperationReport {
     /// The word of the job file.
     pub kind: String,
@@ -153,7 +205,7 @@ pub struct OperationReport {
 }
 
 /// A fact about a file.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DiagnosticReport {
     /// Stable code.
     pub code: String,
@@ -170,6 +222,12 @@ pub struct DiagnosticReport {
 }
 
 impl DiagnosticReport {
+    /// A warning about no place.
+    #[must_use]
+    pub fn warning(code: &str, message: String) -> Self {
+        Self { code: code.to_owned(), severity: "warning".to_owned(), entity: None, line: None, message }
+    }
+
     /// The fact with its line in the file.
     #[must_use]
     pub fn new(diagnostic: &Diagnostic, source: &Source) -> Self {
@@ -192,6 +250,8 @@ impl PartReport {
             output,
             status: Status::Failed,
             code: 0,
+            unchanged: false,
+            sha256: None,
             failure: None,
             write_path: None,
             side_files: Vec::new(),
@@ -210,11 +270,32 @@ impl PartReport {
         }
     }
 
+    /// Takes over why the part failed.
+    pub fn fail(&mut self, error: &PartError) {
+        self.status = Status::Failed;
+        self.code = error.exit_code();
+        self.failure = Some(error.failure());
+        self.side_files.clear();
+    }
+
     /// Takes over the facts about the input.
     pub fn take_diagnostics(&mut self, diagnostics: &Diagnostics, source: &Source) {
         self.diagnostics =
             diagnostics.kept().iter().map(|fact| DiagnosticReport::new(fact, source)).collect();
         self.diagnostic_counts =
             diagnostics.counts().iter().map(|(code, count)| ((*code).to_owned(), *count)).collect();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_report_with_nothing_in_it_is_read_again() {
+        // Workers answer with it, and records keep it: a field that is left out when empty must be read as empty.
+        let report = PartReport::new("a.step".to_owned(), "b.step".to_owned());
+        let text = serde_json::to_string(&report).expect("a tree of texts and numbers");
+        assert_eq!(serde_json::from_str::<PartReport>(&text).expect("the same form"), report);
     }
 }

@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::finding::tolerance;
 use super::validation_property::{DIFFERS, Item, Quantity, items, statements};
@@ -15,7 +15,7 @@ use crate::brep::{BodyId, FaceId};
 use crate::model::{Annotation, ChangeSet, Element, Mass, Model, Origin, Subject};
 
 /// What became of a statement about a changed shape.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Restated {
     /// Record of the property.
     pub entity: String,
@@ -36,7 +36,7 @@ pub struct Restated {
 }
 
 /// What was done with a statement.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Outcome {
     /// Measured again, and written.

@@ -1,4 +1,4 @@
-//! Runs a job over its parts: each is read, changed, written beside its place, read again, judged by
+//! Runs a job on one part: it is read, changed, written beside its place, read again, judged by
 //! others, and only then moved into place.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -6,7 +6,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::Instant;
 
-use super::failure::{PartError, code};
+use serde::{Deserialize, Serialize};
+
+use super::failure::PartError;
 use super::file::{Job, Operation};
 use super::flagged::flagged;
 use super::judge;
@@ -16,13 +18,13 @@ use super::output::Staged;
 use super::own_check::{OwnFinding, changed_faces, findings_of_faces, new_findings, with_neighbours};
 use super::part::Read;
 use super::plan::Part;
-use super::report::{DiagnosticReport, Edits, PartReport, Report, Status, WritePath};
+use super::report::{DiagnosticReport, Edits, PartReport, Status, WritePath};
 use super::restate::{self, Outcome, restated};
 use crate::document::{Document, Stamp};
 use crate::model::{AnnotationKind, Balance, ChangeSet, Model, Origin};
 
 /// Whether a run writes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Mode {
     /// Writes outputs.
     Write,
@@ -30,64 +32,78 @@ pub enum Mode {
     DryRun,
 }
 
-/// Runs a job. Parts are done in order; one that fails does not stop the others. `watch` sees each
-/// part's report when it is finished.
-pub fn run(job: &Job, parts: &[Part], mode: Mode, watch: &mut dyn FnMut(&PartReport)) -> Report {
-    let stamp = Stamp {
-        time: super::clock::time_stamp(),
-        preprocessor: format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION")),
-    };
-    let mut reports = Vec::with_capacity(parts.len());
-    for part in parts {
-        let report = run_part(job, part, mode, &stamp);
-        watch(&report);
-        reports.push(report);
-    }
-    Report {
-        version: 1,
-        program: stamp.preprocessor,
-        job: job.name.clone(),
-        code: overall(&reports),
-        parts: reports,
+/// What is being done to a part.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stage {
+    /// The input is read.
+    Read,
+    /// An operation is carried out.
+    Operation {
+        /// Its number in the job, from 1.
+        number: usize,
+        /// Operations of the job.
+        of: usize,
+        /// The word of the job file.
+        kind: String,
+    },
+    /// The result is read again and compared.
+    Check,
+    /// The result is written beside its place, and other programs are asked about it.
+    Judge,
+}
+
+impl std::fmt::Display for Stage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Read => f.write_str("reading"),
+            Self::Operation { number, of, kind } => write!(f, "operation {number} of {of}, {kind}"),
+            Self::Check => f.write_str("checking"),
+            Self::Judge => f.write_str("writing and validating"),
+        }
     }
 }
 
-/// One part's own code is the run's; of several, a failed one makes the run's 1.
-fn overall(reports: &[PartReport]) -> u8 {
-    match reports {
-        [only] => only.code,
-        _ if reports.iter().all(|report| report.code == code::DONE) => code::DONE,
-        _ => code::GATE,
-    }
+/// Name and version of the program, as reports and changed headers have them.
+#[must_use]
+pub fn program() -> String {
+    format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"))
 }
 
-fn run_part(job: &Job, part: &Part, mode: Mode, stamp: &Stamp) -> PartReport {
+/// Runs a job on one part. `watch` is told what is being done.
+pub fn run_part(job: &Job, part: &Part, mode: Mode, watch: &mut dyn FnMut(Stage)) -> PartReport {
+    let stamp = Stamp { time: super::clock::time_stamp(), preprocessor: program() };
     let start = Instant::now();
     let name = |path: &Path| path.to_string_lossy().into_owned();
     let mut report = PartReport::new(name(&part.input), name(&part.output));
-    let done = catch_unwind(AssertUnwindSafe(|| go(job, part, mode, stamp, &mut report)));
+    let done = catch_unwind(AssertUnwindSafe(|| go(job, part, mode, &stamp, watch, &mut report)));
     match done.unwrap_or(Err(PartError::Internal)) {
         Ok(()) => report.status = Status::Done,
-        Err(error) => {
-            report.code = error.exit_code();
-            report.failure = Some(error.failure());
-            report.side_files.clear();
-        }
+        Err(error) => report.fail(&error),
     }
     report.seconds = start.elapsed().as_secs_f64();
     report.peak_bytes = peak_bytes();
     report
 }
 
-fn go(job: &Job, part: &Part, mode: Mode, stamp: &Stamp, report: &mut PartReport) -> Result<(), PartError> {
+fn go(
+    job: &Job,
+    part: &Part,
+    mode: Mode,
+    stamp: &Stamp,
+    watch: &mut dyn FnMut(Stage),
+    report: &mut PartReport,
+) -> Result<(), PartError> {
+    watch(Stage::Read);
     let mut read = Read::file(&part.input)?;
     read.refuse_other_format(&part.output)?;
-    let result = changed_bytes(job, part, &mut read, stamp, report);
+    let result = changed_bytes(job, part, &mut read, stamp, watch, report);
     report.take_diagnostics(&read.diagnostics, read.document.source());
     let result = result?;
     let changed = &result.bytes;
     // The input's bytes serve again when nothing changed: a copy would double the memory.
     let bytes = changed.as_deref().unwrap_or_else(|| read.document.source().bytes());
+    watch(Stage::Check);
     let needs_model = !job.operation.is_empty() || !job.also.is_empty() || !job.validate.with.is_empty();
     let after = if needs_model { Some(read_again(job, part, bytes, &result, report)?) } else { None };
     if let Some(model) = &after {
@@ -96,15 +112,19 @@ fn go(job: &Job, part: &Part, mode: Mode, stamp: &Stamp, report: &mut PartReport
     if mode == Mode::DryRun {
         return Ok(());
     }
+    watch(Stage::Judge);
     let staged = Staged::write(&part.output, bytes).map_err(PartError::Output)?;
     let mut sides = Vec::new();
     if let Some(model) = &after {
         sides = side_files(job, part, model, report)?;
         let judged = judge::judge(&job.validate, staged.path(), model, None)?;
         report.validators = judged.verdicts;
-        report.losses.extend(judged.unasked.into_iter().map(|text| warning("validate.not-asked", text)));
         report.losses.extend(
-            judge::other_counts(&report.validators, model).map(|text| warning("validate.face-count", text)),
+            judged.unasked.into_iter().map(|text| DiagnosticReport::warning("validate.not-asked", text)),
+        );
+        report.losses.extend(
+            judge::other_counts(&report.validators, model)
+                .map(|text| DiagnosticReport::warning("validate.face-count", text)),
         );
         judge::refuse(&report.validators)?;
     }
@@ -136,6 +156,7 @@ fn changed_bytes(
     part: &Part,
     read: &mut Read,
     stamp: &Stamp,
+    watch: &mut dyn FnMut(Stage),
     report: &mut PartReport,
 ) -> Result<Changed, PartError> {
     report.write_path = Some(WritePath::Verbatim);
@@ -155,7 +176,9 @@ fn changed_bytes(
     let mut bytes: Option<Vec<u8>> = None;
     let mut faces: BTreeSet<Origin> = BTreeSet::new();
     let mut concerned = restate::Changed::default();
-    for operation in &job.operation {
+    for (at, operation) in job.operation.iter().enumerate() {
+        let kind = operation.kind().to_owned();
+        watch(Stage::Operation { number: at + 1, of: job.operation.len(), kind });
         // Each operation reads what the ones before it would have written.
         let between = bytes.as_ref().map(|bytes| read_between(bytes, part)).transpose()?;
         let (document, model) = match &between {
@@ -235,7 +258,7 @@ fn tell_restated(document: &Document, report: &mut PartReport) {
         report.losses.push(DiagnosticReport {
             entity: Some(told.entity.clone()),
             line,
-            ..warning(what.0, format!("'{}' {}: {reason}", told.name, what.1))
+            ..DiagnosticReport::warning(what.0, format!("'{}' {}: {reason}", told.name, what.1))
         });
     }
 }
@@ -322,16 +345,6 @@ fn side_files(
 fn chord(job: &Job, model: &Model) -> Result<Option<f64>, PartError> {
     let wanted = job.tolerance.length.filter(|_| !job.also.is_empty());
     wanted.map(|length| judge::chord(model, length.0, "tolerance.length")).transpose()
-}
-
-fn warning(code: &str, message: String) -> DiagnosticReport {
-    DiagnosticReport {
-        code: code.to_owned(),
-        severity: "warning".to_owned(),
-        entity: None,
-        line: None,
-        message,
-    }
 }
 
 /// Greatest resident memory of the process, where Linux tells.

@@ -10,7 +10,7 @@ use super::measure::kind;
 use super::selector::{ColourSetting, Conditions, Extreme, NamePattern, Selector};
 use crate::brep::FaceId;
 use crate::math::Point3;
-use crate::mesh::{Tolerances, tessellate_faces};
+use crate::mesh::{Tolerances, tessellate_faces, to_triangle};
 use crate::model::{Colour, Model, Origin};
 use crate::units::LengthUnit;
 
@@ -312,20 +312,4 @@ fn by_area(model: &Model, faces: &[FaceId], extreme: Extreme) -> Vec<FaceId> {
         Extreme::Smallest => measured.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))),
     };
     best.map(|(_, face)| face).into_iter().collect()
-}
-
-/// Distance of a point from a triangle, by the regions of its corners and sides.
-pub(super) fn to_triangle(p: &Point3<f64>, [a, b, c]: &[Point3<f64>; 3]) -> f64 {
-    let normal = (b - a).cross(&(c - a));
-    let inside = |from: &Point3<f64>, to: &Point3<f64>| (to - from).cross(&(p - from)).dot(&normal) >= 0.0;
-    if normal.norm() > 0.0 && inside(a, b) && inside(b, c) && inside(c, a) {
-        return ((p - a).dot(&normal) / normal.norm()).abs();
-    }
-    let to_side = |from: &Point3<f64>, to: &Point3<f64>| {
-        let (side, offset) = (to - from, p - from);
-        let length = side.norm_squared();
-        let t = if length > 0.0 { (offset.dot(&side) / length).clamp(0.0, 1.0) } else { 0.0 };
-        (offset - side * t).norm()
-    };
-    to_side(a, b).min(to_side(b, c)).min(to_side(c, a))
 }

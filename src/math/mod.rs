@@ -19,5 +19,5 @@ pub use frame::Frame;
 pub use grid_matrix::{GridFactor, GridMatrix, GridRow};
 pub use least_squares::{NormalEquations, PrincipalAxes, Solution};
 pub use nalgebra::{Matrix2, Matrix3, Point2, Point3, Vector2, Vector3, Vector4};
-pub use rigid_fit::rigid_fit;
+pub use rigid_fit::{nearest_rotation, rigid_fit};
 pub use sprs::{CsMat, TriMat, kronecker_product};

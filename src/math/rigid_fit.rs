@@ -17,6 +17,13 @@ pub fn rigid_fit(pairs: &[(Point3<f64>, Point3<f64>)]) -> Option<Affine> {
     let to = mean(pairs.iter().map(|(_, q)| q - onto).sum(), onto);
     let products: Matrix3<f64> =
         pairs.iter().map(|(p, q)| (q.coords - to) * (p.coords - from).transpose()).sum();
+    let linear = nearest_rotation(&products)?;
+    Some(Affine { linear, translation: to - linear * from })
+}
+
+/// The rotation `R` for which the trace of `Rᵀ products` is greatest; `None` when an entry is not finite.
+#[must_use]
+pub fn nearest_rotation(products: &Matrix3<f64>) -> Option<Matrix3<f64>> {
     if !products.iter().all(|c| c.is_finite()) {
         return None;
     }
@@ -25,8 +32,7 @@ pub fn rigid_fit(pairs: &[(Point3<f64>, Point3<f64>)]) -> Option<Affine> {
     let mut sides = Vector3::repeat(1.0);
     // The last singular value is the least: turning its side round costs least.
     sides.z = (u * v).determinant().signum();
-    let linear = u * Matrix3::from_diagonal(&sides) * v;
-    Some(Affine { linear, translation: to - linear * from })
+    Some(u * Matrix3::from_diagonal(&sides) * v)
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@
 
 pub mod glb;
 mod integrity;
+mod nearest;
 pub mod off;
 mod scene;
 pub mod stl;
@@ -13,6 +14,7 @@ pub mod three_mf;
 mod triangle_mesh;
 
 pub use integrity::Integrity;
+pub use nearest::{NearestTriangle, to_segment, to_triangle};
 pub use scene::{Part, Rgb, Scene};
 pub use tessellate::{TessellateError, Tolerances, tessellate_bodies, tessellate_faces};
 pub use triangle_mesh::{Extents, Mesh};

@@ -21,7 +21,7 @@ pub struct Mesh {
 }
 
 /// An axis-parallel box, in file units.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
 pub struct Extents {
     /// Least coordinates.
     pub min: [f64; 3],

@@ -62,10 +62,16 @@ pub enum OperationError {
         /// Lower-case fragment.
         reason: String,
     },
-    /// A face hangs on a held loop and is scaled elsewhere.
-    #[error(
-        "face {face} is held at {held} and scaled at {scaled}; a face that is partly held cannot follow yet"
-    )]
+    /// What hangs on a hold comes back to the part that is scaled.
+    #[error("what hangs on {held} is not separated from the part: {reason}")]
+    HoldNotSeparated {
+        /// The held loop or face.
+        held: String,
+        /// Lower-case fragment.
+        reason: String,
+    },
+    /// A face is held at one end and scaled at another.
+    #[error("face {face} is held at {held} and scaled at {scaled}: it cannot follow both")]
     PartlyHeld {
         /// The face.
         face: String,
@@ -108,8 +114,9 @@ impl OperationError {
             Self::CannotFollow { .. } => "scale.cannot-follow",
             Self::NeighboursOutside { .. } => "scale.neighbours-outside",
             Self::NothingToHold { .. } => "scale.nothing-to-hold",
-            Self::NotHoldable { .. } => "scale.not-holdable",
-            Self::PartlyHeld { .. } => "scale.partly-held",
+            Self::NotHoldable { .. } => "scale.held-loop-not-inner",
+            Self::HoldNotSeparated { .. } => "scale.hold-not-separated",
+            Self::PartlyHeld { .. } => "scale.face-partly-held",
             Self::NoParameterLoops { .. } => "scale.no-parameter-loops",
             Self::RigidityLost { .. } => "internal.rigidity-lost",
         }

@@ -21,7 +21,17 @@ use std::time::Duration;
 
 /// A program that gives verdicts.
 #[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, schemars::JsonSchema,
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Hash,
+    serde::Serialize,
+    serde::Deserialize,
+    schemars::JsonSchema,
 )]
 #[serde(rename_all = "lowercase")]
 pub enum Validator {
@@ -96,7 +106,7 @@ impl Request<'_> {
 }
 
 /// What a program found in a file; a figure that it does not give is absent.
-#[derive(Debug, Clone, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
 pub struct Figures {
     /// Format as the program took it: `step`, `iges`, `brep`, `off`, `stl`.
     pub format: String,
@@ -136,7 +146,7 @@ pub struct Figures {
 }
 
 /// A program's answer.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
 pub struct Verdict {
     /// Who answered.
     pub validator: Validator,

@@ -9,7 +9,9 @@ pub(super) fn floats(numbers: impl IntoIterator<Item = f64>) -> String {
     encode(&bytes)
 }
 
-fn encode(bytes: &[u8]) -> String {
+/// Bytes in base 64, with padding.
+#[must_use]
+pub fn encode(bytes: &[u8]) -> String {
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for chunk in bytes.chunks(3) {
         let at = |k: usize| u32::from(chunk.get(k).copied().unwrap_or(0));

@@ -3,9 +3,13 @@
 //!
 //! Knows no files and fetches nothing: the page works offline. The script in it is `page.js`, ours.
 
-mod base64;
+pub mod base64;
 mod scene;
 
+use std::collections::BTreeMap;
+
+use crate::brep::FaceId;
+use crate::math::Point3;
 use crate::model::Model;
 use scene::Scene;
 
@@ -27,11 +31,37 @@ pub struct Page {
 /// Placed bodies of one page at most: beyond that no browser follows.
 pub const MOST_BODIES: usize = 20_000;
 
+/// Numbers at points of a face in its body's coordinates; `None` for a face that is shown as new.
+pub type ValuesOf<'a> = dyn Fn(FaceId, &[Point3<f64>]) -> Option<Vec<f64>> + 'a;
+
+/// Numbers over the faces of a page, and words about them.
+pub struct Overlay<'a> {
+    /// What the numbers are, with their unit.
+    pub label: String,
+    /// The number that gets the full colour, positive.
+    pub most: f64,
+    /// The numbers.
+    pub values: &'a ValuesOf<'a>,
+    /// What is told of a face when it is picked.
+    pub notes: BTreeMap<String, Vec<String>>,
+    /// Lines about the whole.
+    pub lines: Vec<String>,
+}
+
 /// The page of a model. `chord` is the greatest distance of triangles from their surfaces, in the unit of each
 /// body; `None` for a thousandth of the body's size.
 #[must_use]
 pub fn page(model: &Model, title: &str, chord: Option<f64>) -> Page {
-    let scene = Scene::of(model, title, chord);
+    page_of(Scene::of(model, title, chord, None), title)
+}
+
+/// As [`page`], with numbers over the faces.
+#[must_use]
+pub fn page_with(model: &Model, title: &str, overlay: &Overlay<'_>) -> Page {
+    page_of(Scene::of(model, title, None, Some(overlay)), title)
+}
+
+fn page_of(scene: Scene, title: &str) -> Page {
     let data = serde_json::to_string(&scene).expect("a scene is a tree of texts and numbers");
     // No text of the file may end the script that holds it.
     let data = data.replace('<', "\\u003c");

@@ -49,6 +49,7 @@ for (const body of scene.bodies) {
   body.position = buffer(body.points);
   body.normal = buffer(floats(body.normals));
   body.number = buffer(numbered(body.faces, 3));
+  body.value = body.values && buffer(floats(body.values));
   body.segment = buffer(body.ends);
   body.edgeNumber = buffer(numbered(body.edges, 2));
 }
@@ -87,10 +88,11 @@ function runs(body, placed) {
 // ---- Drawing ----------------------------------------------------------------------------------------------
 
 const VERTEX = `
-attribute vec3 position; attribute vec3 normal; attribute float number;
+attribute vec3 position; attribute vec3 normal; attribute float number; attribute float value;
 uniform mat4 model; uniform mat4 view; uniform float pull;
-varying vec3 facing; varying float item;
+varying vec3 facing; varying float item; varying float heat;
 void main() {
+  heat = value;
   facing = mat3(view) * (mat3(model) * normal);
   item = number;
   gl_Position = view * (model * vec4(position, 1.0));
@@ -99,11 +101,17 @@ void main() {
 const SHADE = `
 precision mediump float;
 uniform vec4 colour; uniform vec3 inside; uniform bool solid; uniform bool flatly; uniform vec3 stretch;
-varying vec3 facing;
+uniform float most; // The number of the full colour; 0 to show the faces' own colours.
+varying vec3 facing; varying float heat;
+vec3 scale(float part) {
+  vec3 none = vec3(0.83, 0.84, 0.86), some = vec3(0.98, 0.85, 0.30), all = vec3(0.78, 0.10, 0.12);
+  return part < 0.5 ? mix(none, some, 2.0 * part) : mix(some, all, 2.0 * part - 1.0);
+}
 void main() {
   if (flatly) { gl_FragColor = colour; return; }
   float light = abs(dot(normalize(facing / stretch), normalize(vec3(0.3, 0.45, -0.85))));
-  vec3 own = solid && !gl_FrontFacing ? inside : colour.rgb;
+  vec3 shown = most <= 0.0 ? colour.rgb : heat < 0.0 ? vec3(0.15, 0.60, 0.30) : scale(min(heat / most, 1.0));
+  vec3 own = solid && !gl_FrontFacing ? inside : shown;
   gl_FragColor = vec4(own * (0.35 + 0.65 * light), colour.a);
 }`;
 const NUMBER = `
@@ -123,10 +131,10 @@ function program(fragment) {
     if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
     gl.attachShader(made, shader);
   }
-  ["position", "normal", "number"].forEach((name, at) => gl.bindAttribLocation(made, at, name));
+  ["position", "normal", "number", "value"].forEach((name, at) => gl.bindAttribLocation(made, at, name));
   gl.linkProgram(made);
   const at = {};
-  for (const name of ["model", "view", "pull", "colour", "inside", "solid", "flatly", "stretch", "base"]) {
+  for (const name of ["model", "view", "pull", "colour", "inside", "solid", "flatly", "stretch", "base", "most"]) {
     at[name] = gl.getUniformLocation(made, name);
   }
   return { made, at };
@@ -145,17 +153,21 @@ function bindFaces(body) {
   attribute(0, body.position, 3);
   attribute(1, body.normal, 3);
   attribute(2, body.number, 1);
+  if (body.value) attribute(3, body.value, 1);
+  else gl.disableVertexAttribArray(3);
 }
 
 function bindEdges(body) {
   attribute(0, body.segment, 3);
   gl.disableVertexAttribArray(1);
   attribute(2, body.edgeNumber, 1);
+  gl.disableVertexAttribArray(3);
 }
 
 // The camera looks along its third axis at a point, and sees so many units from the middle to the upper end.
 const camera = { axes: [[1, 0, 0], [0, 1, 0], [0, 0, 1]], target: [0, 0, 0], half: 1, depth: 1 };
 let showEdges = true;
+let showValues = Boolean(scene.legend);
 let chosen = null;
 
 function size() {
@@ -217,6 +229,7 @@ function draw() {
   gl.uniform1i(at.flatly, 0);
   gl.uniform1f(at.pull, 0);
   gl.disable(gl.BLEND);
+  gl.uniform1f(at.most, showValues ? scene.legend.most : 0);
   drawRuns(shading, (run) => run.alpha >= 1);
   drawChosenFace(at);
   if (showEdges) drawEdges(at);
@@ -236,9 +249,11 @@ function drawChosenFace(at) {
   gl.uniformMatrix4fv(at.model, false, placed.model);
   gl.uniform1i(at.solid, 0);
   gl.uniform4f(at.colour, ...CHOSEN, 1);
+  gl.uniform1f(at.most, 0);
   gl.uniform1f(at.pull, 0.00005);
   gl.drawArrays(gl.TRIANGLES, face.first, face.count * 3);
   gl.uniform1f(at.pull, 0);
+  gl.uniform1f(at.most, showValues ? scene.legend.most : 0);
 }
 
 function drawEdges(at) {
@@ -504,6 +519,22 @@ function controls() {
     element("button", name, bar).onclick = () => look(ahead, upward);
   }
   element("button", "Edges", bar).onclick = () => { showEdges = !showEdges; redraw(); };
+  if (scene.legend) legend(bar);
+}
+
+// What the colours mean, and the lines about the whole.
+function legend(bar) {
+  element("button", "Colours", bar).onclick = () => { showValues = !showValues; redraw(); };
+  const box = document.createElement("section");
+  box.id = "legend";
+  bar.after(box);
+  element("div", scene.legend.label, box);
+  element("div", undefined, box).className = "heat";
+  const ends = element("div", undefined, box);
+  ends.className = "ends";
+  element("span", "0", ends);
+  element("span", short(scene.legend.most), ends);
+  for (const line of scene.legend.lines) element("div", line, box).className = "line";
 }
 
 // A node hides what is below it; a body hides itself.

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
-use super::{MOST_BODIES, base64};
+use super::{MOST_BODIES, Overlay, base64};
 use crate::brep::{BodyId, BodyKind, EdgeId, EdgeSampling, FaceId, sample_edge};
 use crate::geometry::Carried;
 use crate::math::Point3;
@@ -21,10 +21,20 @@ pub(super) struct Scene {
     bodies: Vec<BodyData>,
     placed: Vec<PlacedData>,
     colours: Vec<String>,
+    /// What the numbers over the faces are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    legend: Option<LegendData>,
     #[serde(skip)]
     pub(super) missing: Vec<String>,
     #[serde(skip)]
     pub(super) cut: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct LegendData {
+    label: String,
+    most: f64,
+    lines: Vec<String>,
 }
 
 /// A product instance.
@@ -46,6 +56,9 @@ struct BodyData {
     positions: String,
     normals: String,
     faces: Vec<FaceData>,
+    /// The number at each corner of the triangles; below zero on a face that is new.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    values: Option<String>,
     /// Ends of the segments, three numbers each, edge by edge.
     segments: String,
     edges: Vec<EdgeData>,
@@ -89,7 +102,7 @@ struct PlacedData {
 }
 
 impl Scene {
-    pub(super) fn of(model: &Model, title: &str, chord: Option<f64>) -> Self {
+    pub(super) fn of(model: &Model, title: &str, chord: Option<f64>, overlay: Option<&Overlay<'_>>) -> Self {
         let unit =
             model.contexts.first().map_or_else(LengthUnit::millimetre, |context| context.length.clone());
         let instances = Instances::of(model, &unit, MOST_BODIES);
@@ -106,14 +119,22 @@ impl Scene {
             bodies: Vec::new(),
             placed: Vec::new(),
             colours: Vec::new(),
+            legend: overlay.map(|overlay| LegendData {
+                label: overlay.label.clone(),
+                most: overlay.most,
+                lines: overlay.lines.clone(),
+            }),
             missing: Vec::new(),
             cut: instances.cut,
         };
-        let words = Words::of(model);
+        let mut words = Words::of(model);
+        if let Some(overlay) = overlay {
+            words.tell(model, overlay);
+        }
         let mut known: BTreeMap<BodyId, usize> = BTreeMap::new();
         for placed in instances.bodies.iter().take(MOST_BODIES) {
             let body = *known.entry(placed.body).or_insert_with(|| {
-                scene.bodies.push(body(model, placed.body, chord, &words, &mut scene.missing));
+                scene.bodies.push(body(model, placed.body, chord, &words, overlay, &mut scene.missing));
                 scene.bodies.len() - 1
             });
             scene.place(model, &instances, placed, body);
@@ -170,6 +191,15 @@ impl Words {
             notes,
         }
     }
+
+    /// Puts what an overlay tells of faces before what the file tells.
+    fn tell(&mut self, model: &Model, overlay: &Overlay<'_>) {
+        for (face, origin) in model.origins.faces.iter() {
+            if let Some(lines) = overlay.notes.get(&origin.to_string()) {
+                self.notes.entry(face).or_default().splice(0..0, lines.iter().cloned());
+            }
+        }
+    }
 }
 
 fn faces_of(model: &Model, body: BodyId) -> Vec<FaceId> {
@@ -183,17 +213,28 @@ fn hex(colour: Colour) -> String {
     format!("#{:02x}{:02x}{:02x}", part(colour.red), part(colour.green), part(colour.blue))
 }
 
-fn body(model: &Model, id: BodyId, chord: Option<f64>, words: &Words, missing: &mut Vec<String>) -> BodyData {
+fn body(
+    model: &Model,
+    id: BodyId,
+    chord: Option<f64>,
+    words: &Words,
+    overlay: Option<&Overlay<'_>>,
+    missing: &mut Vec<String>,
+) -> BodyData {
     let faces = faces_of(model, id);
     let mut tolerances = Tolerances::for_size(size(model, &faces));
     tolerances.chord = chord.unwrap_or(tolerances.chord);
     let meshes = meshes(model, &faces, &tolerances, missing);
     let (mut positions, mut normals) = (Vec::new(), Vec::new());
-    let mut data = Vec::new();
+    let (mut data, mut values) = (Vec::new(), Vec::new());
     for &face in &faces {
         let (corners, of_corners) = meshes.get(&face).cloned().unwrap_or_default();
         let area = corners.iter().map(|[a, b, c]| 0.5 * (b - a).cross(&(c - a)).norm()).sum();
         data.push(face_data(model, face, words, corners.len(), area));
+        if let Some(overlay) = overlay {
+            let points: Vec<Point3<f64>> = corners.iter().flatten().copied().collect();
+            values.extend((overlay.values)(face, &points).unwrap_or_else(|| vec![NEW; points.len()]));
+        }
         positions.extend(corners.iter().flatten().flat_map(|p| [p.x, p.y, p.z]));
         normals.extend(of_corners.iter().flatten().flat_map(|n| [n.x, n.y, n.z]));
     }
@@ -207,10 +248,14 @@ fn body(model: &Model, id: BodyId, chord: Option<f64>, words: &Words, missing: &
         positions: base64::floats(positions),
         normals: base64::floats(normals),
         faces: data,
+        values: overlay.map(|_| base64::floats(values)),
         segments: base64::floats(segments),
         edges,
     }
 }
+
+/// Number on a face that is new.
+const NEW: f64 = -1.0;
 
 /// Diagonal of the box of the vertices; 1 when they all coincide.
 fn size(model: &Model, faces: &[FaceId]) -> f64 {

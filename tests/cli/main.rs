@@ -1,7 +1,10 @@
 //! The real program in a fresh folder: what it prints, what it leaves, and how it ends.
 
 mod accepted;
+mod batch;
+mod cluster;
 mod detail;
+mod diff;
 mod jobs;
 mod locality;
 mod parts;
@@ -9,6 +12,8 @@ mod paste;
 mod paste_corpus;
 mod paste_targets;
 mod patho;
+mod regress;
+mod solids;
 mod stated;
 #[path = "../support/mod.rs"]
 #[allow(dead_code, reason = "shared with other test binaries")]

@@ -7,7 +7,9 @@ use resurf::diagnostic::Diagnostics;
 use resurf::geometry::Surface;
 use resurf::model::Model;
 use resurf::ops::OperationError;
-use resurf::ops::constrained_scale::plan::{FaceMeasures, HoldTarget, Params, Plan, Scope, plan};
+use resurf::ops::constrained_scale::plan::{
+    FaceMeasures, HoldTarget, LoopFilter, Params, Plan, Scope, Wall, plan,
+};
 use resurf::ops::constrained_scale::{Hold, Scaling};
 use resurf::source::Source;
 use resurf::step::{ExchangeStructure, to_model::to_model};
@@ -31,7 +33,17 @@ fn corpus(name: &str) -> Option<Model> {
 
 fn run(model: &Model, factors: [f64; 3], scope: Scope) -> Result<Plan, OperationError> {
     let scaling = Scaling::new(factors);
-    plan(model, &Params { scaling, scope, hold: vec![HoldTarget::InnerLoops], mode: Hold::Rigid })
+    plan(
+        model,
+        &Params {
+            scaling,
+            scope,
+            hold: vec![HoldTarget::InnerLoops(LoopFilter::default())],
+            mode: Hold::Rigid,
+            wall: Wall::Rigid,
+            stop: Vec::new(),
+        },
+    )
 }
 
 fn named(model: &Model, name: &str) -> FaceId {
@@ -102,18 +114,28 @@ fn a_real_nose_scales_with_its_holes_held() {
     let loops = done.measures.groups.iter().flat_map(|g| &g.loops);
     assert!(loops.map(|l| l.rigid_deviation).all(|d| d <= 1e-12));
     assert!(done.notes.iter().any(|n| n.code == "scale.faces-stayed"));
-    // Over the whole part, what cannot follow is named.
+    // The rest of the part follows too: what has no image of its kind gets an exact one.
     let other: Vec<FaceId> = model.brep.faces.ids().filter(|f| !with_holes.contains(f)).collect();
     let params = Params {
         scaling: Scaling::new([1.1, 1.2, 1.25]),
-        scope: Scope::Faces(other),
+        scope: Scope::Faces(other.clone()),
         hold: Vec::new(),
         mode: Hold::Rigid,
+        wall: Wall::Rigid,
+        stop: Vec::new(),
     };
-    let found = plan(&model, &params).map(|_| ()).unwrap_err();
-    let OperationError::CannotFollow { obstacles } = found else { panic!("{found}") };
-    assert!(obstacles.iter().all(|o| o.entity.starts_with('#') && !o.kind.is_empty()));
-    assert!(!obstacles.iter().any(|o| o.kind == "b_spline" || o.kind == "plane"));
+    let plain = plan(&model, &params).unwrap().change_set;
+    let kinds = |face: &FaceId| (model.brep.surface_of(*face).read().unwrap(), plain.surfaces.get(face));
+    let changed: Vec<(&str, &str)> = other
+        .iter()
+        .map(kinds)
+        .filter_map(|(old, new)| Some((old.kind(), new?.kind())).filter(|(old, new)| old != new))
+        .collect();
+    assert!(!changed.is_empty());
+    for (old, new) in changed {
+        let exact = [("cylinder", "linear_extrusion"), ("cone", "b_spline"), ("torus", "b_spline")];
+        assert!(exact.contains(&(old, new)) || (old, new) == ("sphere", "b_spline"), "{old} {new}");
+    }
 }
 
 #[test]
@@ -133,8 +155,10 @@ fn a_loop_held_along_some_axes_is_not_called_rigid() {
         let params = Params {
             scaling: Scaling::new(factors),
             scope: Scope::Part,
-            hold: vec![HoldTarget::InnerLoops],
+            hold: vec![HoldTarget::InnerLoops(LoopFilter::default())],
             mode,
+            wall: Wall::Rigid,
+            stop: Vec::new(),
         };
         let measures = plan(&model, &params).unwrap().measures;
         let loops = measures.groups.iter().flat_map(|group| group.loops.clone());

@@ -7,7 +7,7 @@ use resurf::geometry::{Carried, Curve, Surface};
 use resurf::math::{Frame, Point3, Vector3};
 use resurf::model::Model;
 use resurf::ops::OperationError;
-use resurf::ops::constrained_scale::plan::{HoldTarget, Params, Plan, Scope, plan};
+use resurf::ops::constrained_scale::plan::{HoldTarget, LoopFilter, Params, Plan, Scope, Wall, plan};
 use resurf::ops::constrained_scale::{Hold, Scaling};
 
 use super::models::{BOTTOM, FIRST_WALL, Hole, TOP, applied, polygon_hole, round_hole, thin_solid};
@@ -34,8 +34,10 @@ fn params(factors: [f64; 3]) -> Params {
     Params {
         scaling: Scaling::new(factors),
         scope: Scope::Part,
-        hold: vec![HoldTarget::InnerLoops],
+        hold: vec![HoldTarget::InnerLoops(LoopFilter::default())],
         mode: Hold::Rigid,
+        wall: Wall::Rigid,
+        stop: Vec::new(),
     }
 }
 
@@ -146,16 +148,37 @@ fn an_element_whose_image_is_itself_is_not_in_the_change_set() {
 }
 
 #[test]
-fn plain_scaling_refuses_what_has_no_exact_image_and_names_it() {
+fn a_cylinder_across_which_factors_differ_is_extruded_from_an_ellipse() {
     let model = flat_solid();
-    let found = refused(&model, &Params { hold: Vec::new(), ..params(GROW) });
-    let OperationError::CannotFollow { obstacles } = &found else { panic!("{found}") };
-    let named: Vec<_> = obstacles.iter().map(|o| (o.entity.as_str(), o.kind.as_str())).collect();
-    assert_eq!(named, [("#1006", "cylinder"), ("#1007", "cylinder")]);
+    let plan = planned(&model, &Params { hold: Vec::new(), ..params(GROW) });
+    let map = Scaling::new(GROW).affine().unwrap();
+    for wall in [FIRST_WALL, FIRST_WALL + 1] {
+        let image = &plan.change_set.surfaces[&face(wall)];
+        assert_eq!(image.kind(), "linear_extrusion");
+        // 1.2 > 1.1: the ellipse counts its angle from the other axis.
+        for k in 0..16 {
+            let (u, v) = (0.4 * f64::from(k), -0.2 * f64::from(k));
+            let expected = map.point(&surface(&model, wall).point(u, v));
+            let found = image.point(u - std::f64::consts::FRAC_PI_2, 1.25 * v);
+            assert!((found - expected).norm() < 1e-12, "{found} {expected}");
+        }
+    }
     // Equal factors keep them.
     let plan = planned(&model, &Params { hold: Vec::new(), ..params([2.0; 3]) });
     let Surface::Cylinder { radius, .. } = plan.change_set.surfaces[&face(FIRST_WALL)] else { panic!() };
     assert!((radius - 50.0).abs() < 1e-12);
+}
+
+#[test]
+fn plain_scaling_refuses_what_has_no_exact_image_and_names_it() {
+    let mut model = flat_solid();
+    let id = model.brep.faces[face(FIRST_WALL)].surface;
+    let basis = Box::new(surface(&model, FIRST_WALL).clone());
+    model.brep.surfaces[id] = Carried::Read(Surface::Offset { basis, distance: 0.0 });
+    let found = refused(&model, &Params { hold: Vec::new(), ..params(GROW) });
+    let OperationError::CannotFollow { obstacles } = &found else { panic!("{found}") };
+    let named: Vec<_> = obstacles.iter().map(|o| (o.entity.as_str(), o.kind.as_str())).collect();
+    assert_eq!(named, [("#1006", "offset")]);
 }
 
 #[test]
@@ -200,15 +223,68 @@ fn a_hold_on_one_end_of_a_hole_spreads_to_the_other() {
 }
 
 #[test]
-fn a_hole_that_ends_on_a_plane_cannot_be_held_yet() {
-    // The lower skin is a plane: the flood goes on over it and comes back by the side walls.
+fn a_hole_that_ends_on_a_plane_is_where_the_plane_is() {
     let frame =
         Frame { origin: Point3::new(0.0, 0.0, -3.0), x: Vector3::x(), y: Vector3::y(), z: Vector3::z() };
     let model = thin_solid(&flat(), &[round_hole(200.0, 150.0, 30.0)], Some(Surface::Plane(frame)));
-    let found = refused(&model, &params(GROW));
-    assert_eq!(found.code(), "scale.partly-held");
-    let OperationError::PartlyHeld { face, .. } = found else { panic!() };
-    assert_eq!(face, "#1000");
+    let plan = planned(&model, &params(GROW));
+    let new = applied(&model, &plan.change_set);
+    let circles = |model: &Model| {
+        let mut heights = Vec::new();
+        for edge in model.brep.edges.ids() {
+            if let Some(Curve::Circle { frame, radius }) = model.brep.curve_of(edge).read() {
+                assert_eq!(*radius, 30.0);
+                heights.push(frame.origin.z);
+            }
+        }
+        heights
+    };
+    // The lower plane goes down to -3.75, and the wall keeps its length of 3.
+    assert_eq!(circles(&model), [0.0, -3.0]);
+    let near = |found: &[f64], expected: [f64; 2], room: f64| {
+        assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() <= room), "{found:?} {expected:?}");
+    };
+    near(&circles(&new), [-0.75, -3.75], 1e-14);
+    assert!(gap(&new) <= gap(&model) + 1e-9);
+    assert_eq!(plan.measures.faces.len(), 1, "only the upper skin is stretched");
+    // A wall that slides has both ends where the skins are.
+    let plan = planned(&model, &Params { wall: Wall::Slide, ..params(GROW) });
+    let new = applied(&model, &plan.change_set);
+    near(&circles(&new), [0.0, -3.75], 1e-9);
+}
+
+/// A face that hangs on a held loop, or one that was named, is held to the bit where nothing has to move it.
+#[test]
+fn a_named_wall_is_held_with_both_its_ends() {
+    let model = flat_solid();
+    let wall = HoldTarget::Faces(vec![face(FIRST_WALL)]);
+    let named = planned(&model, &Params { hold: vec![wall], ..params(GROW) });
+    assert_eq!(named.measures.groups.len(), 1);
+    assert_eq!(named.measures.groups[0].loops.len(), 2);
+    let loops = [TOP, BOTTOM].map(|k| model.brep.faces[face(k)].loops[1]);
+    let by_loop = planned(&model, &Params { hold: vec![HoldTarget::Loop(loops[0])], ..params(GROW) });
+    assert_eq!(named.change_set, by_loop.change_set);
+    // The other hole's walls follow the scaling.
+    assert_eq!(named.change_set.surfaces[&face(FIRST_WALL + 1)].kind(), "linear_extrusion");
+    let found = refused(&model, &Params { hold: vec![HoldTarget::Faces(vec![face(2)])], ..params(GROW) });
+    assert_eq!(found.code(), "scale.hold-not-separated");
+    let stopped = Params { stop: vec![face(FIRST_WALL)], ..params(GROW) };
+    assert_eq!(refused(&model, &stopped).code(), "scale.hold-not-separated");
+}
+
+#[test]
+fn inner_loops_are_chosen_by_face_and_by_width() {
+    let holes = [round_hole(120.0, 150.0, 25.0), round_hole(280.0, 150.0, 10.0)];
+    let model = thin_solid(&flat(), &holes, None);
+    let groups = |filter: LoopFilter| {
+        let chosen = Params { hold: vec![HoldTarget::InnerLoops(filter)], ..params(GROW) };
+        plan(&model, &chosen).map(|plan| plan.measures.groups.len())
+    };
+    assert_eq!(groups(LoopFilter { on: None, up_to: Some(20.0 + 1e-9) }).unwrap(), 1);
+    assert_eq!(groups(LoopFilter { on: None, up_to: Some(50.0 + 1e-9) }).unwrap(), 2);
+    assert_eq!(groups(LoopFilter { on: Some(vec![face(TOP)]), up_to: None }).unwrap(), 2);
+    let none = groups(LoopFilter { on: Some(vec![face(2)]), up_to: None }).unwrap_err();
+    assert_eq!(none.code(), "scale.nothing-to-hold");
 }
 
 #[test]
@@ -216,10 +292,10 @@ fn loops_that_cannot_be_held() {
     let model = curved_solid();
     let outer: LoopId = model.brep.faces[face(TOP)].loops[0];
     let found = refused(&model, &Params { hold: vec![HoldTarget::Loop(outer)], ..params(GROW) });
-    assert_eq!(found.code(), "scale.not-holdable");
+    assert_eq!(found.code(), "scale.held-loop-not-inner");
     let of_wall: LoopId = model.brep.faces[face(FIRST_WALL)].loops[0];
     let found = refused(&model, &Params { hold: vec![HoldTarget::Loop(of_wall)], ..params(GROW) });
-    assert_eq!(found.code(), "scale.not-holdable");
+    assert_eq!(found.code(), "scale.held-loop-not-inner");
     let found = refused(&thin_solid(&small(), &[], None), &params(GROW));
     assert_eq!(found.code(), "scale.nothing-to-hold");
 }

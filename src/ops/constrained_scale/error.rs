@@ -77,6 +77,29 @@ pub enum ScaleError {
         /// Second loop.
         second: usize,
     },
+    /// What is held ends on planes that the scaling takes apart or turns against each other, and no wall in between can
+    /// be made longer.
+    #[error(
+        "what is held on {} ends on planes that the scaling {}, and no straight wall between them can be made longer",
+        .faces.join(", "), parted(*.apart)
+    )]
+    PlanesConflict {
+        /// The planes.
+        faces: Vec<String>,
+        /// Greatest distance, in file units, of a held loop from the image of its plane; infinite when the planes turn
+        /// against each other.
+        apart: f64,
+    },
+    /// A held wall would turn inside out: its ends would pass each other.
+    #[error("face {face}: a wall of length {before:.6} would get the length {after:.6}")]
+    WallInverted {
+        /// A face of the wall.
+        face: String,
+        /// Length before.
+        before: f64,
+        /// Length after, negative when the ends have passed each other.
+        after: f64,
+    },
     /// Nothing of the face is left to stretch.
     #[error("face {face}: the held loops cover the face, nothing is left to stretch")]
     HoldCoversFace {
@@ -167,6 +190,8 @@ impl ScaleError {
             Self::LoopOutsideDomain { .. } => "scale.loop-outside-domain",
             Self::LoopDegenerate { .. } => "scale.loop-degenerate",
             Self::HeldLoopsOverlap { .. } => "scale.held-loops-overlap",
+            Self::PlanesConflict { .. } => "scale.hold-conflict-planes",
+            Self::WallInverted { .. } => "scale.wall-inverted",
             Self::HoldCoversFace { .. } => "scale.hold-covers-face",
             Self::FeatureTooCloseToBoundary { .. } => "scale.feature-too-close-to-boundary",
             Self::NetTooLarge { .. } => "scale.net-too-large",
@@ -175,5 +200,13 @@ impl ScaleError {
             Self::SingularParametrisation { .. } => "scale.singular-parametrisation",
             Self::SingularSystem { .. } => "scale.singular-system",
         }
+    }
+}
+
+fn parted(apart: f64) -> String {
+    if apart.is_finite() {
+        format!("moves apart by {apart:.6}")
+    } else {
+        "turns against each other".to_owned()
     }
 }

@@ -8,9 +8,10 @@ use super::ScaleError;
 use super::envelope::{Prepared, PreparedLoop};
 use super::fold::Compression;
 use super::grouping::{Grouping, refine_together};
-use super::motion::{LoopFrame, Motion, degenerate};
+use super::motion::Motion;
 use super::prepare::prepare;
 use super::refine::Refined;
+use super::rule::{Arrangement, ByLoops, MotionRule};
 use super::scaling::{Hold, Scaling};
 use super::skins;
 use super::solve::choose_amounts;
@@ -44,17 +45,42 @@ pub fn scale_face(
 pub fn scale_faces(tasks: &[FaceTask<'_>], scaling: &Scaling) -> Result<Scaled, ScaleError> {
     let plain = scaling.affine()?;
     let faces = tasks.iter().map(prepare).collect::<Result<Vec<_>, _>>()?;
+    let rule = ByLoops { tasks, faces: &faces, scaling, plain: &plain };
+    run(tasks, &faces, scaling, &plain, &rule)
+}
+
+/// As [`scale_faces`], with the motions of a rule that knows more than the loops of these faces.
+///
+/// # Errors
+/// As [`scale_faces`], and those of the rule.
+pub fn scale_faces_by(
+    tasks: &[FaceTask<'_>],
+    scaling: &Scaling,
+    rule: &dyn MotionRule,
+) -> Result<Scaled, ScaleError> {
+    let plain = scaling.affine()?;
+    let faces = tasks.iter().map(prepare).collect::<Result<Vec<_>, _>>()?;
+    run(tasks, &faces, scaling, &plain, rule)
+}
+
+fn run(
+    tasks: &[FaceTask<'_>],
+    faces: &[Prepared],
+    scaling: &Scaling,
+    plain: &Affine,
+    rule: &dyn MotionRule,
+) -> Result<Scaled, ScaleError> {
     let mut grouping = Grouping::new(tasks);
     let moves = |l: &PreparedLoop| matches!(l.hold, Hold::Pinned(Some(_)));
     if plain.is_identity() && !faces.iter().flat_map(|f| &f.held).any(moves) {
-        return unchanged(tasks, &faces, &grouping, scaling, &plain);
+        return unchanged(tasks, &grouping, rule);
     }
     let mut least = vec![0; faces.len()];
     let mut parted = false;
     loop {
-        let refined = refine_together(&faces, &mut grouping, &mut least, scaling)?;
-        let motions = motions(&faces, &grouping, scaling, &plain)?;
-        let mut solved = solve(tasks, &faces, refined, &grouping, motions, scaling, &plain)?;
+        let refined = refine_together(faces, &mut grouping, &mut least, scaling)?;
+        let arrangement = rule.arrange(&grouping.sets())?;
+        let mut solved = solve(tasks, faces, refined, &grouping, arrangement, scaling, plain)?;
         // One more level gives the stretched part more room, as long as the limit allows.
         if let Some(folded) = solved.faces.iter().position(|f| f.compression.is_fold()) {
             let Compression { ratio, near } = solved.faces[folded].compression;
@@ -64,7 +90,7 @@ pub fn scale_faces(tasks: &[FaceTask<'_>], scaling: &Scaling) -> Result<Scaled, 
             least[folded] = solved.faces[folded].level + 1;
             continue;
         }
-        solved.skins = skins::pairs(&faces, &solved);
+        solved.skins = skins::pairs(faces, &solved);
         let Some(close) = solved.skins.iter().find(|pair| pair.is_too_close()) else { return Ok(solved) };
         if parted {
             let names = close.faces.map(|face| faces[face].name.clone());
@@ -78,44 +104,19 @@ pub fn scale_faces(tasks: &[FaceTask<'_>], scaling: &Scaling) -> Result<Scaled, 
     }
 }
 
-fn motions(
-    faces: &[Prepared],
-    grouping: &Grouping,
-    scaling: &Scaling,
-    plain: &Affine,
-) -> Result<Vec<Motion>, ScaleError> {
-    let mut motions = Vec::new();
-    for group in grouping.groups() {
-        let mut frames = Vec::new();
-        let mut first: Option<(&Prepared, usize, Hold)> = None;
-        for (face, roots) in faces.iter().zip(&grouping.root) {
-            for (k, _) in roots.iter().enumerate().filter(|(_, root)| **root == group) {
-                let held = &face.held[k];
-                first.get_or_insert((face, k, held.hold));
-                let frame = LoopFrame::new(&face.surface, &held.polygon, scaling.energy);
-                frames.push(frame.map_err(|at| degenerate(&face.name, k, scaling.energy, at))?);
-            }
-        }
-        let (face, k, hold) = first.expect("a group has a loop");
-        let motion = Motion::new(&frames, hold, scaling, plain);
-        motions.push(motion.ok_or(ScaleError::LoopDegenerate { face: face.name.clone(), held: k })?);
-    }
-    Ok(motions)
-}
-
 fn solve(
     tasks: &[FaceTask<'_>],
     faces: &[Prepared],
     refined: Vec<Refined>,
     grouping: &Grouping,
-    mut motions: Vec<Motion>,
+    arrangement: Arrangement,
     scaling: &Scaling,
     plain: &Affine,
 ) -> Result<Scaled, ScaleError> {
-    let groups = grouping.groups();
+    let Arrangement { mut motions, of_loop } = arrangement;
     let mut stages = Vec::with_capacity(faces.len());
     for (k, refined) in refined.into_iter().enumerate() {
-        let held = held_sets(&refined, &grouping.root[k], &groups);
+        let held = held_sets(&refined, &of_loop[k]);
         let staged = || stage(&faces[k].name, refined, held, &motions, scaling, plain);
         stages.push((!faces[k].held.is_empty()).then(staged).transpose()?);
     }
@@ -132,33 +133,36 @@ fn solve(
         });
     }
     let residual = residual.greatest(&motions);
-    Ok(Scaled { faces: done, groups: group_list(grouping, motions), skins: Vec::new(), residual })
+    Ok(Scaled {
+        faces: done,
+        sets: grouping.sets(),
+        groups: group_list(grouping, motions, &of_loop),
+        skins: Vec::new(),
+        residual,
+    })
 }
 
-fn group_list(grouping: &Grouping, motions: Vec<Motion>) -> Vec<Group> {
-    let of = |group: usize| {
-        let faces = grouping.root.iter().enumerate();
-        let loops = faces.flat_map(move |(f, roots)| {
-            roots.iter().enumerate().filter(move |(_, r)| **r == group).map(move |(k, _)| (f, k))
-        });
-        loops.collect()
-    };
-    let groups = grouping.groups().into_iter().zip(motions);
+/// The motions with the loops that follow them.
+fn group_list(grouping: &Grouping, motions: Vec<Motion>, of_loop: &[Vec<usize>]) -> Vec<Group> {
+    let mut groups: Vec<Group> =
+        motions.into_iter().map(|motion| Group { loops: Vec::new(), motion, merged: false }).collect();
+    for (face, own) in of_loop.iter().enumerate() {
+        for (k, &motion) in own.iter().enumerate() {
+            groups[motion].loops.push((face, k));
+            groups[motion].merged |= grouping.merged.contains(&grouping.root[face][k]);
+        }
+    }
     groups
-        .map(|(group, motion)| Group { loops: of(group), motion, merged: grouping.merged.contains(&group) })
-        .collect()
 }
 
 /// The result of the identity: every surface as it came, every motion the identity.
 fn unchanged(
     tasks: &[FaceTask<'_>],
-    faces: &[Prepared],
     grouping: &Grouping,
-    scaling: &Scaling,
-    plain: &Affine,
+    rule: &dyn MotionRule,
 ) -> Result<Scaled, ScaleError> {
-    let motions = motions(faces, grouping, scaling, plain)?;
-    let done = tasks.iter().map(|task| ScaledFace::whole(task.surface.clone()));
-    let groups = group_list(grouping, motions);
-    Ok(Scaled { faces: done.collect(), groups, skins: Vec::new(), residual: 0.0 })
+    let Arrangement { motions, of_loop } = rule.arrange(&grouping.sets())?;
+    let faces = tasks.iter().map(|task| ScaledFace::whole(task.surface.clone())).collect();
+    let groups = group_list(grouping, motions, &of_loop);
+    Ok(Scaled { faces, sets: grouping.sets(), groups, skins: Vec::new(), residual: 0.0 })
 }

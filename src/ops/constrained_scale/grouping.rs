@@ -1,6 +1,6 @@
 //! Which loops share a motion, and the refinement that may join more of them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::ScaleError;
 use super::envelope::Prepared;
@@ -13,6 +13,8 @@ use super::task::FaceTask;
 pub(super) struct Grouping {
     /// By face and loop.
     pub(super) root: Vec<Vec<usize>>,
+    /// By face and loop: the caller's number of its group.
+    number: Vec<Vec<usize>>,
     /// Loops joined because they are near.
     pub(super) merged: Vec<usize>,
     /// Roots that were given up, with the root that took their place.
@@ -32,7 +34,8 @@ impl Grouping {
             });
             roots.collect()
         });
-        Self { root: root.collect(), merged: Vec::new(), joined: BTreeMap::new() }
+        let number = tasks.iter().map(|task| task.held.iter().map(|l| l.group).collect());
+        Self { root: root.collect(), number: number.collect(), merged: Vec::new(), joined: BTreeMap::new() }
     }
 
     /// Joins the groups that loops with these roots are in by now; roots may have been joined already.
@@ -57,6 +60,16 @@ impl Grouping {
             root = kept;
         }
         root
+    }
+
+    /// For each root in order the caller's numbers of the groups that move with it.
+    pub(super) fn sets(&self) -> Vec<Vec<usize>> {
+        let of = |root: usize| {
+            let loops = self.root.iter().flatten().zip(self.number.iter().flatten());
+            let numbers: BTreeSet<usize> = loops.filter(|(r, _)| **r == root).map(|(_, n)| *n).collect();
+            numbers.into_iter().collect()
+        };
+        self.groups().into_iter().map(of).collect()
     }
 
     /// Roots in order.

@@ -106,32 +106,40 @@ pub fn motion_deviation(
     points: &[[f64; 2]],
     motion: &Motion,
 ) -> MotionDeviation {
-    let (mut worst, mut magnitude) = (0.0_f64, 0.0_f64);
-    let mut low = Vector3::repeat(f64::INFINITY);
-    let mut high = -low;
     let mut pairs = Vec::with_capacity(points.len() * FINER);
     for (a, b) in points.iter().zip(points.iter().cycle().skip(1)) {
         for k in 0..FINER {
             let t = k as f64 / FINER as f64;
             let (u, v) = (a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]));
-            let start = before.point(u, v);
-            let expected = motion.apply(&start);
-            let found = after.point(u, v);
+            pairs.push((before.point(u, v), after.point(u, v)));
+        }
+    }
+    MotionDeviation::of_pairs(&pairs, motion)
+}
+
+impl MotionDeviation {
+    /// Of points with what became of them.
+    #[must_use]
+    pub fn of_pairs(pairs: &[(Point3<f64>, Point3<f64>)], motion: &Motion) -> Self {
+        let (mut worst, mut magnitude) = (0.0_f64, 0.0_f64);
+        let mut low = Vector3::repeat(f64::INFINITY);
+        let mut high = -low;
+        for (start, found) in pairs {
+            let expected = motion.apply(start);
             worst = worst.max((found - expected).amax());
-            pairs.push((start, found));
             magnitude = magnitude.max(start.coords.amax()).max(expected.coords.amax());
             low = low.inf(&start.coords);
             high = high.sup(&start.coords);
         }
-    }
-    let extent = (high - low).max();
-    // Where the motion is rigid, it is the copy that was meant: a fit could only flatter it.
-    let best = if motion.is_rigid() { None } else { rigid_fit(&pairs) };
-    let off = best.map(|best| pairs.iter().map(|(p, q)| (best.point(p) - q).amax()).fold(0.0, f64::max));
-    MotionDeviation {
-        rigid: off.unwrap_or(worst) / extent,
-        relative: worst / extent,
-        rounding: ROUNDINGS * f64::EPSILON * magnitude / extent,
+        let extent = (high - low).max();
+        // Where the motion is rigid, it is the copy that was meant: a fit could only flatter it.
+        let best = if motion.is_rigid() { None } else { rigid_fit(pairs) };
+        let off = best.map(|best| pairs.iter().map(|(p, q)| (best.point(p) - q).amax()).fold(0.0, f64::max));
+        Self {
+            rigid: off.unwrap_or(worst) / extent,
+            relative: worst / extent,
+            rounding: ROUNDINGS * f64::EPSILON * magnitude / extent,
+        }
     }
 }
 

@@ -25,6 +25,7 @@ pub mod motion;
 pub mod plan;
 mod prepare;
 pub mod refine;
+pub mod rule;
 pub mod scaling;
 pub mod skins;
 pub mod slide;
@@ -34,7 +35,7 @@ pub mod task;
 
 pub use super::net::{cells, polygon, sampling};
 pub use error::ScaleError;
-pub use faces::{scale_face, scale_faces};
+pub use faces::{scale_face, scale_faces, scale_faces_by};
 pub use motion::Motion;
 pub use scaling::{Continuity, Energy, Freedom, Hold, Scaling};
 pub use task::{Contour, FaceTask, Group, HeldLoop, Scaled, ScaledFace};

@@ -22,6 +22,12 @@ pub struct LoopFrame {
 const NO_AREA: f64 = 1e-12;
 
 impl LoopFrame {
+    /// From sums that were taken elsewhere: points times weights, the weights, and a direction.
+    #[must_use]
+    pub fn of_sums(weighted: Vector3<f64>, weight: f64, direction: Vector3<f64>) -> Self {
+        Self { weighted, weight, direction }
+    }
+
     /// Frame of a loop on the surface before scaling.
     ///
     /// # Errors
@@ -104,9 +110,22 @@ impl Motion {
         let weighted: Vector3<f64> = frames.iter().map(|f| f.weighted).sum();
         let pivot = Point3::from(weighted / weight);
         let scaled_normal = cofactor(&plain.linear) * normal;
-        let axis = scaled_normal.try_normalize(0.0)?;
+        let turn = minimal_rotation(&normal, &scaled_normal, &Vector3::x());
+        Some(Self::placed(turn, pivot, scaled_normal.try_normalize(0.0)?, hold, scaling, plain))
+    }
+
+    /// The motion about a pivot, by the given rotation where the hold lets the group turn.
+    #[must_use]
+    pub fn placed(
+        turn: Matrix3<f64>,
+        pivot: Point3<f64>,
+        axis: Vector3<f64>,
+        hold: Hold,
+        scaling: &Scaling,
+        plain: &Affine,
+    ) -> Self {
         let linear = match hold {
-            Hold::Rigid => minimal_rotation(&normal, &scaled_normal, &Vector3::x()),
+            Hold::Rigid => turn,
             Hold::Translated | Hold::Pinned(_) => Matrix3::identity(),
             Hold::Axes(held) => {
                 let factors = [0, 1, 2].map(|k| if held[k] { 1.0 } else { scaling.factors[k] });
@@ -115,10 +134,10 @@ impl Motion {
         };
         let (target, directions) = match (hold, scaling.freedom) {
             (Hold::Pinned(at), _) => (at.unwrap_or(pivot), Vec::new()),
-            (Hold::Axes(_), _) | (_, Freedom::Normal) => (plain.point(&pivot), vec![axis]),
-            (_, Freedom::Free) => (plain.point(&pivot), vec![Vector3::x(), Vector3::y(), Vector3::z()]),
+            (Hold::Axes(_), _) | (_, Freedom::Normal) => (scaled(plain, &pivot), vec![axis]),
+            (_, Freedom::Free) => (scaled(plain, &pivot), vec![Vector3::x(), Vector3::y(), Vector3::z()]),
         };
-        Some(Self { linear, pivot, target, axis, amounts: vec![0.0; directions.len()], directions })
+        Self { linear, pivot, target, axis, amounts: vec![0.0; directions.len()], directions }
     }
 
     /// The displacement that the solve chose.
@@ -139,6 +158,17 @@ impl Motion {
         let off = (self.linear.transpose() * self.linear - Matrix3::identity()).abs().max();
         off <= RIGID
     }
+}
+
+/// Roundings of a coordinate within which a point counts as its own image: a feature at the centre of the scaling must
+/// keep its bits.
+const STAYS: f64 = 4.0;
+
+/// The image of a pivot, or the pivot itself where only rounding moves it.
+fn scaled(plain: &Affine, pivot: &Point3<f64>) -> Point3<f64> {
+    let image = plain.point(pivot);
+    let size = pivot.coords.amax().max(plain.translation.amax());
+    if (image - pivot).amax() <= STAYS * f64::EPSILON * size { *pivot } else { image }
 }
 
 /// Greatest deviation of `MᵀM` from the identity that rounding leaves in a rotation.

@@ -52,6 +52,8 @@ impl SkinPair {
 
 /// Part of the lesser expected thickness below which skins are too close.
 const TOO_CLOSE: f64 = 0.8;
+/// Distance, as a part of the size, at which two faces are one: there is nothing between them to keep.
+const COINCIDENT: f64 = 1e-9;
 /// Samples of the first skin in each direction.
 const SAMPLES: usize = 33;
 /// Least cosine between the normal and the way to the other face, for it to be one's other side.
@@ -92,12 +94,14 @@ impl<'a> Skins<'a> {
 
     fn measured(&self) -> Option<SkinPair> {
         let locator = SurfaceLocator::new(self.before[1], Wrap::default());
+        let coincident = COINCIDENT * self.before[0].bounding_box().diagonal();
         let (u, v) = self.before[0].domain();
         let mut sums = [Sum::default(); 3];
         let mut worst = (f64::INFINITY, Point3::origin());
         let places = steps(u.0, u.1, SAMPLES).flat_map(|u| steps(v.0, v.1, SAMPLES).map(move |v| [u, v]));
         for at in places.filter(|at| self.has_material(*at)) {
-            let Some(sample) = self.sample(at, &locator) else { continue };
+            let sample = self.sample(at, &locator);
+            let Some(sample) = sample.filter(|sample| sample.thickness[0] > coincident) else { continue };
             for (sum, thickness) in sums.iter_mut().zip(sample.thickness) {
                 sum.add(thickness);
             }

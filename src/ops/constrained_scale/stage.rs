@@ -1,5 +1,7 @@
 //! One face from its refined net to its result: system, reference, elimination, back substitution.
 
+use std::collections::BTreeSet;
+
 use super::ScaleError;
 use super::cells::Mask;
 use super::energy::energy_matrix;
@@ -29,22 +31,20 @@ pub(super) struct Stage {
     pub(super) elimination: Elimination,
 }
 
-/// For each group with loops on a face: its index, its control points as a set and as a list.
-pub(super) fn held_sets(
-    refined: &Refined,
-    roots: &[usize],
-    groups: &[usize],
-) -> Vec<(usize, Mask, Vec<usize>)> {
+/// For each motion that loops on a face follow: its index, its control points as a set and as a list. `of_loop` tells
+/// the motion of each held loop.
+pub(super) fn held_sets(refined: &Refined, of_loop: &[usize]) -> Vec<(usize, Mask, Vec<usize>)> {
     let (rows, columns) = refined.surface.shape();
-    let mut sets = Vec::new();
-    for (index, group) in groups.iter().enumerate() {
+    let motions: BTreeSet<usize> = of_loop.iter().copied().collect();
+    let mut sets = Vec::with_capacity(motions.len());
+    for motion in motions {
         let mut mask = Mask::empty(rows, columns);
-        for (held, _) in refined.envelopes.held.iter().zip(roots).filter(|(_, root)| *root == group) {
+        for (held, _) in refined.envelopes.held.iter().zip(of_loop).filter(|(_, own)| **own == motion) {
             mask.unite(held);
         }
         let points: Vec<usize> = mask.indices().collect();
         if !points.is_empty() {
-            sets.push((index, mask, points));
+            sets.push((motion, mask, points));
         }
     }
     sets

@@ -72,7 +72,9 @@ pub struct Group {
 pub struct Scaled {
     /// One for each task, in order.
     pub faces: Vec<ScaledFace>,
-    /// Groups in the order of their first loops.
+    /// The caller's numbers of the groups that had to be joined, or stayed alone, in the order of their first loops.
+    pub sets: Vec<Vec<usize>>,
+    /// One for each motion of the rule.
     pub groups: Vec<Group>,
     /// Faces that share a group and lie opposite to each other, with the material between them.
     pub skins: Vec<SkinPair>,

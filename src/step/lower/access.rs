@@ -12,6 +12,7 @@ use super::super::view::EntityView;
 use super::super::write::RecordWriter;
 use super::compose::{Body, Inherited};
 use super::{LowerError, Lowering};
+use crate::geometry::Surface;
 use crate::geometry::nurbs::KnotVector;
 use crate::number::format_real;
 use crate::source::Span;
@@ -246,9 +247,18 @@ impl<'a> Lowering<'a> {
         self.inherited(name, [closed.clone(), closed])
     }
 
-    /// Raw text that a new surface takes over from the record that it replaces.
-    pub(super) fn inherited_by_surface(&self, name: InstanceName) -> Inherited {
-        self.inherited(name, [self.raw(name, "u_closed", ".U."), self.raw(name, "v_closed", ".U.")])
+    /// Raw text that a new surface takes over from the record that it replaces. Whether a spline is closed is its own to
+    /// say where that record did not.
+    pub(super) fn inherited_by_surface(&self, name: InstanceName, new: &Surface) -> Inherited {
+        let closed = match new {
+            Surface::Nurbs(spline) => {
+                let tolerance = SAME_BORDER * spline.bounding_box().diagonal();
+                [spline.is_closed_u(tolerance), spline.is_closed_v(tolerance)]
+            }
+            _ => [false, false],
+        };
+        let text = closed.map(|closed| if closed { ".T." } else { ".F." });
+        self.inherited(name, [self.raw(name, "u_closed", text[0]), self.raw(name, "v_closed", text[1])])
     }
 
     fn inherited(&self, name: InstanceName, closed: [String; 2]) -> Inherited {
@@ -274,6 +284,9 @@ fn repeated_references(structure: &ExchangeStructure, user: u32) -> BTreeMap<Ins
     let runs = all.chunk_by(|a, b| a == b).filter(|run| run.len() > 1);
     runs.map(|run| (run[0], run.len())).collect()
 }
+
+/// Distance of opposite borders, as a part of a surface's size, at which it says of itself that it is closed.
+const SAME_BORDER: f64 = 1e-9;
 
 /// Splines without knots in the file whose implied knots are clamped.
 const CLAMPED: [Entity; 4] =

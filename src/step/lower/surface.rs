@@ -53,7 +53,7 @@ impl Lowering<'_> {
     }
 
     fn give_own_surface(&mut self, face: FaceId, old: InstanceName, new: &Surface) -> Result<(), LowerError> {
-        let inherited = self.inherited_by_surface(old);
+        let inherited = self.inherited_by_surface(old, new);
         let body = self.surface_body(old, new, self.radians_of(face), &inherited)?;
         let name = self.append(&body)?;
         let user = super::instance_name(self.model.origins.faces[face])?;
@@ -122,7 +122,7 @@ impl Lowering<'_> {
                 self.request_net(target, &compose::euclidean(old.net()), &compose::euclidean(new.net()))
             }
             _ => {
-                let inherited = self.inherited_by_surface(target);
+                let inherited = self.inherited_by_surface(target, new);
                 let body = self.surface_body(target, new, radians, &inherited)?;
                 self.rewrite(target, &body)
             }

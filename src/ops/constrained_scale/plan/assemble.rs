@@ -2,14 +2,17 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::hold::Held;
-use super::rigid::{moved_curve, moved_surface};
+use super::base::Base;
+use super::follow::{Follow, Mover};
+use super::held::Held;
+use super::image::{CurveParameter, SurfaceParameters, curve_image, surface_image};
+use super::pcurve;
 use super::scope::{Scope, face_name};
 use super::stretch::Stretched;
-use crate::brep::{CoedgeId, EdgeId, FaceId, VertexId};
+use crate::brep::{CoedgeId, EdgeId, FaceId, VertexId, edge_range};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::geometry::{Carried, Curve, Surface};
-use crate::math::Affine;
+use crate::geometry::{Carried, Curve, ParameterMap, Surface};
+use crate::math::{Affine, Frame, Matrix2, Vector2, Vector3};
 use crate::model::{ChangeSet, Model};
 use crate::ops::{Obstacle, OperationError};
 
@@ -19,39 +22,29 @@ pub(super) fn change_set(
     scope: &BTreeSet<FaceId>,
     held: &Held,
     stretched: &Stretched,
+    follow: &Follow,
     plain: &Affine,
-    notes: &mut Vec<Diagnostic>,
-    what: &Scope,
 ) -> Result<ChangeSet, OperationError> {
-    let motions = stretched.motions.iter().map(|m| Mover {
-        map: Affine { linear: m.linear, translation: m.apply(&crate::math::Point3::origin()).coords },
-        rigid: m.is_rigid(),
-    });
+    let plain = Mover { map: *plain, rigid: false };
     let mut build = Build {
         model,
         held,
-        plain: Mover { map: *plain, rigid: false },
-        motions: motions.collect(),
+        stretched,
+        follow,
+        plain,
         changes: ChangeSet::default(),
+        edges: BTreeMap::new(),
         obstacles: Vec::new(),
     };
-    for &face in scope {
-        match stretched.faces.get(&face) {
-            Some(scaled) => {
-                build.changes.surfaces.insert(face, Surface::Nurbs(scaled.surface.clone()));
-            }
-            None => build.face(face),
-        }
-    }
     let edges: BTreeSet<EdgeId> =
         scope.iter().flat_map(|&f| model.brep.coedges_of(f)).map(|c| model.brep.coedges[c].edge).collect();
     for &edge in &edges {
         build.edge(edge);
     }
-    build.vertices(scope, &edges)?;
-    if *what == Scope::Part {
-        build.free_curves(notes);
+    for &face in scope {
+        build.face(face);
     }
+    build.vertices(scope, &edges)?;
     if build.obstacles.is_empty() {
         Ok(build.changes)
     } else {
@@ -59,79 +52,142 @@ pub(super) fn change_set(
     }
 }
 
-/// One motion.
-#[derive(Debug, Clone, Copy)]
-struct Mover {
-    map: Affine,
-    /// Whether it keeps all distances, so that kinds and radii stay.
-    rigid: bool,
-}
-
 struct Build<'a> {
     model: &'a Model,
     held: &'a Held,
+    stretched: &'a Stretched,
+    follow: &'a Follow,
     plain: Mover,
-    motions: Vec<Mover>,
     changes: ChangeSet,
+    /// How the parameters of the edges follow.
+    edges: BTreeMap<EdgeId, CurveParameter>,
     obstacles: Vec<Obstacle>,
 }
 
 impl Build<'_> {
-    fn mover(&self, group: Option<usize>) -> Mover {
-        group.map_or(self.plain, |g| self.motions[g])
+    fn mover(&self, piece: Option<&usize>) -> Mover {
+        piece.map_or(self.plain, |&k| self.follow.movers[k])
     }
 
-    fn obstacle(&mut self, entity: String, kind: &str, reason: String) {
-        self.obstacles.push(Obstacle { entity, kind: kind.to_owned(), reason });
+    fn edge_mover(&self, edge: EdgeId) -> Mover {
+        self.mover(self.follow.edges.get(&edge))
     }
 
-    /// A face without held loops: an image of its surface, and of its parameter curves where the parameters change.
-    fn face(&mut self, face: FaceId) {
-        let mover = self.mover(self.held.hanging.get(&face).copied());
-        let model = self.model;
-        let surface = match model.brep.surface_of(face) {
-            Carried::Read(surface) => surface,
-            Carried::Unread { entity, reason } => {
-                return self.obstacle(face_name(model, face), entity, reason.clone());
-            }
+    fn edge(&mut self, edge: EdgeId) {
+        let image = match self.generator(edge) {
+            Some(image) => Ok((image, CurveParameter::Shift(0.0))),
+            None => curve_image(self.model, edge, &self.edge_mover(edge)),
         };
-        if mover.rigid {
-            let image = moved_surface(surface, &mover.map);
-            if image != *surface {
-                self.changes.surfaces.insert(face, image);
+        match image {
+            Ok((image, parameter)) => {
+                if self.model.brep.curve_of(edge).read() != Some(&image) {
+                    self.changes.curves.insert(edge, image);
+                }
+                self.edges.insert(edge, parameter);
             }
-            return;
+            Err(obstacle) => self.obstacles.push(obstacle),
         }
-        match surface.transformed(&mover.map) {
-            Ok(image) => {
-                if image != *surface {
+    }
+
+    /// An edge along a wall that becomes longer: an endless line stays itself, another curve is drawn anew between its
+    /// moved ends.
+    fn generator(&self, edge: EdgeId) -> Option<Curve> {
+        let brep = &self.model.brep;
+        let curve = brep.curve_of(edge).read()?;
+        if !self.follow.generators.contains(&edge) || matches!(curve, Curve::Line { .. }) {
+            return None;
+        }
+        let range = edge_range(brep, edge)?;
+        let ends = [brep.edges[edge].start, brep.edges[edge].end];
+        let [start, end] = ends.map(|v| self.vertex_mover(v).map.point(&brep.vertices[v].point));
+        let direction = (end - start) / (range.end - range.start);
+        Some(Curve::Line { origin: start - direction * range.start, direction })
+    }
+
+    fn vertex_mover(&self, vertex: VertexId) -> Mover {
+        self.mover(self.follow.vertices.get(&vertex))
+    }
+
+    /// The surface of a face, and its parameter curves.
+    fn face(&mut self, face: FaceId) {
+        let mover = self.mover(self.follow.faces.get(&face));
+        let found = match (self.held.bases.get(&face), self.stretched.faces.get(&face)) {
+            (Some(Base::Net(base)), Some(scaled)) => {
+                let same = base.carrier.is_same();
+                let lines = || SurfaceParameters::Lines(Box::new(base.carrier.clone()));
+                let parameters = if same { SurfaceParameters::stay() } else { lines() };
+                Ok((Surface::Nurbs(scaled.surface.clone()), parameters))
+            }
+            _ => surface_image(self.model, face, &mover),
+        };
+        match found {
+            Ok((image, parameters)) => {
+                self.parameter_curves(face, &image, &parameters, &mover);
+                if self.model.brep.surface_of(face).read() != Some(&image) {
                     self.changes.surfaces.insert(face, image);
                 }
-                self.parameter_curves(face, surface, &mover.map);
             }
-            Err(error) => self.obstacle(face_name(model, face), surface.kind(), error.to_string()),
+            Err(obstacle) => self.obstacles.push(obstacle),
         }
     }
 
-    fn parameter_curves(&mut self, face: FaceId, surface: &Surface, map: &Affine) {
+    fn parameter_curves(
+        &mut self,
+        face: FaceId,
+        image: &Surface,
+        parameters: &SurfaceParameters,
+        mover: &Mover,
+    ) {
         let model = self.model;
-        let parameters = match surface.parameter_map(map) {
-            Ok(parameters) if parameters.is_identity() => return,
-            Ok(parameters) => parameters,
-            Err(error) => return self.obstacle(face_name(model, face), surface.kind(), error.to_string()),
-        };
         for coedge in model.brep.coedges_of(face) {
-            let Some(curve) = &model.brep.coedges[coedge].pcurve else { continue };
-            match curve.transformed(&parameters) {
+            let use_of = &model.brep.coedges[coedge];
+            let (Some(curve), Some(edge)) = (&use_of.pcurve, self.edges.get(&use_of.edge)) else { continue };
+            let its = self.edge_mover(use_of.edge);
+            // An edge that moves against its face: on a plane, or at the far end of a wall that becomes longer.
+            let apart = (its != *mover && self.held.bases.get(&face).is_none_or(|b| b.net().is_none()))
+                .then(|| self.moved_on(face, image, &its))
+                .flatten()
+                .map(SurfaceParameters::Affine);
+            let parameters = apart.as_ref().unwrap_or(parameters);
+            let found = edge_range(&model.brep, use_of.edge)
+                .ok_or_else(|| "its ends have no parameters".to_owned())
+                .and_then(|r| {
+                    pcurve::image(curve, parameters, edge, (r.start.min(r.end), r.start.max(r.end)))
+                });
+            match found {
                 Ok(image) if image == *curve => {}
                 Ok(image) => {
                     self.changes.pcurves.insert(coedge, image);
                 }
-                Err(error) => {
+                Err(reason) => {
                     let entity = self.parameter_curve_name(coedge);
-                    self.obstacle(entity, "parameter curve", error.to_string());
+                    self.obstacles.push(Obstacle { entity, kind: "parameter curve".to_owned(), reason });
                 }
             }
+        }
+    }
+
+    /// Parameters on the new surface of what an edge's own motion makes of a point on the old one.
+    fn moved_on(&self, face: FaceId, image: &Surface, edge: &Mover) -> Option<ParameterMap> {
+        let old = self.model.brep.surface_of(face).read()?;
+        match (old, image) {
+            (Surface::Plane(from), Surface::Plane(onto)) => Some(plane_parameters(from, onto, &edge.map)),
+            (Surface::Cylinder { frame: from, .. }, Surface::Cylinder { frame: onto, .. }) => {
+                let height = (edge.map.point(&from.origin) - onto.origin).dot(&onto.z);
+                Some(ParameterMap::stretch(1.0, 1.0, Vector2::new(0.0, height)))
+            }
+            (
+                Surface::LinearExtrusion { curve: from, .. },
+                Surface::LinearExtrusion { curve: onto, direction },
+            ) => {
+                // Any place on both will do; the domain of a line has no end to start from.
+                let (first, last) = from.domain();
+                let t = if first.is_finite() { first } else { last.min(0.0) };
+                let offset = edge.map.point(&from.point_at(t)) - onto.point_at(t);
+                let height = offset.dot(direction) / direction.norm_squared();
+                Some(ParameterMap::stretch(1.0, 1.0, Vector2::new(0.0, height)))
+            }
+            _ => None,
         }
     }
 
@@ -140,47 +196,31 @@ impl Build<'_> {
         own.unwrap_or(self.model.origins.coedges[coedge]).to_string()
     }
 
-    fn edge(&mut self, edge: EdgeId) {
-        let mover = self.mover(self.held.edges.get(&edge).copied());
-        match self.model.brep.curve_of(edge) {
-            Carried::Read(curve) => match image(curve, &mover) {
-                Ok(image) if image == *curve => {}
-                Ok(image) => {
-                    self.changes.curves.insert(edge, image);
-                }
-                Err(reason) => {
-                    self.obstacle(self.model.origins.edges[edge].to_string(), curve.kind(), reason)
-                }
-            },
-            Carried::Unread { entity, reason } => {
-                self.obstacle(self.model.origins.edges[edge].to_string(), entity, reason.clone());
-            }
-        }
-    }
-
-    /// Moves each vertex with its edges; refuses one that would have to follow two motions.
+    /// Moves each vertex with its edges; refuses one that would have to follow the scaling and a hold.
     fn vertices(&mut self, scope: &BTreeSet<FaceId>, edges: &BTreeSet<EdgeId>) -> Result<(), OperationError> {
-        let mut movers: BTreeMap<VertexId, (Option<usize>, Option<EdgeId>)> = BTreeMap::new();
+        let brep = &self.model.brep;
+        let mut moved: BTreeSet<VertexId> = BTreeSet::new();
         for &edge in edges {
-            let group = self.held.edges.get(&edge).copied();
-            for vertex in [self.model.brep.edges[edge].start, self.model.brep.edges[edge].end] {
-                let (known, by) = *movers.entry(vertex).or_insert((group, Some(edge)));
-                if known != group {
-                    return Err(self.torn(edge, by, group.is_some()));
+            for vertex in [brep.edges[edge].start, brep.edges[edge].end] {
+                if self.follow.vertices.contains_key(&vertex) && !self.follow.edges.contains_key(&edge) {
+                    return Err(self.torn(edge, vertex));
                 }
+                moved.insert(vertex);
             }
         }
+        let mut vertices: BTreeMap<VertexId, Mover> =
+            moved.into_iter().map(|vertex| (vertex, self.vertex_mover(vertex))).collect();
         for &face in scope {
-            let group = self.held.hanging.get(&face).copied();
-            let loops = self.model.brep.faces[face].loops.iter();
-            for vertex in loops.filter_map(|&l| self.model.brep.loops[l].vertex) {
-                movers.entry(vertex).or_insert((group, None));
+            let mover = self.mover(self.follow.faces.get(&face));
+            let loops = brep.faces[face].loops.iter();
+            for vertex in loops.filter_map(|&l| brep.loops[l].vertex) {
+                vertices.entry(vertex).or_insert(mover);
             }
         }
-        self.refuse_shared_vertices(edges, &movers)?;
-        for (vertex, (group, _)) in movers {
-            let before = self.model.brep.vertices[vertex].point;
-            let after = self.mover(group).map.point(&before);
+        self.refuse_shared_vertices(edges, &vertices)?;
+        for (vertex, mover) in vertices {
+            let before = brep.vertices[vertex].point;
+            let after = mover.map.point(&before);
             if after != before {
                 self.changes.points.insert(vertex, after);
             }
@@ -188,21 +228,21 @@ impl Build<'_> {
         Ok(())
     }
 
-    fn torn(&self, edge: EdgeId, other: Option<EdgeId>, edge_is_held: bool) -> OperationError {
+    fn torn(&self, scaled: EdgeId, vertex: VertexId) -> OperationError {
+        let brep = &self.model.brep;
         let name = |e: EdgeId| self.model.origins.edges[e].to_string();
-        let (edge_name, other_name) = (name(edge), other.map_or_else(String::new, name));
-        let face = self.model.brep.coedges.iter().find(|(_, c)| c.edge == edge);
-        let face = face.map(|(_, c)| face_name(self.model, self.model.brep.loops[c.in_loop].face));
-        let face = face.unwrap_or_default();
-        let (held, scaled) = if edge_is_held { (edge_name, other_name) } else { (other_name, edge_name) };
-        OperationError::PartlyHeld { face, held, scaled }
+        let ends_here = |e: EdgeId| brep.edges[e].start == vertex || brep.edges[e].end == vertex;
+        let held = self.follow.edges.keys().find(|&&e| ends_here(e)).map_or_else(String::new, |&e| name(e));
+        let face = brep.coedges.iter().find(|(_, c)| c.edge == scaled);
+        let face = face.map(|(_, c)| face_name(self.model, brep.loops[c.in_loop].face)).unwrap_or_default();
+        OperationError::PartlyHeld { face, held, scaled: name(scaled) }
     }
 
     /// An edge outside the scope may not lose its vertex.
     fn refuse_shared_vertices(
         &self,
         edges: &BTreeSet<EdgeId>,
-        movers: &BTreeMap<VertexId, (Option<usize>, Option<EdgeId>)>,
+        movers: &BTreeMap<VertexId, Mover>,
     ) -> Result<(), OperationError> {
         let brep = &self.model.brep;
         let mut neighbours = BTreeSet::new();
@@ -210,7 +250,7 @@ impl Build<'_> {
             let edge = &brep.edges[coedge.edge];
             let moved = [edge.start, edge.end].iter().any(|v| {
                 let point = brep.vertices[*v].point;
-                movers.get(v).is_some_and(|(group, _)| self.mover(*group).map.point(&point) != point)
+                movers.get(v).is_some_and(|mover| mover.map.point(&point) != point)
             });
             if moved {
                 neighbours.insert(brep.loops[coedge.in_loop].face);
@@ -222,38 +262,46 @@ impl Build<'_> {
         let neighbours = neighbours.into_iter().map(|f| face_name(self.model, f)).collect();
         Err(OperationError::NeighboursOutside { faces: vec!["a shared vertex".to_owned()], neighbours })
     }
-
-    /// Curves that belong to no edge follow the plain scaling; those that were not understood stay, with a note.
-    fn free_curves(&mut self, notes: &mut Vec<Diagnostic>) {
-        for &id in &self.model.free_curves {
-            let entity = Some(self.model.origins.curves[id].to_string());
-            let stays = match &self.model.brep.curves[id] {
-                Carried::Read(curve) => match curve.transformed(&self.plain.map) {
-                    Ok(image) => {
-                        if image != *curve {
-                            self.changes.free_curves.insert(id, image);
-                        }
-                        continue;
-                    }
-                    Err(error) => error.to_string(),
-                },
-                Carried::Unread { entity, reason } => format!("{entity}: {reason}"),
-            };
-            notes.push(Diagnostic {
-                code: "scale.curve-stayed",
-                severity: Severity::Warning,
-                entity,
-                span: None,
-                message: format!("curve stays as it is: {stays}"),
-            });
-        }
-    }
 }
 
-/// Image of an edge's curve.
-fn image(curve: &Curve, mover: &Mover) -> Result<Curve, String> {
-    if mover.rigid {
-        return Ok(moved_curve(curve, &mover.map));
+/// Parameters on one plane of the images of points given by their parameters on another.
+fn plane_parameters(from: &Frame, onto: &Frame, map: &Affine) -> ParameterMap {
+    let at = |v: Vector3<f64>| Vector2::new(v.dot(&onto.x), v.dot(&onto.y));
+    let linear = Matrix2::from_columns(&[at(map.vector(&from.x)), at(map.vector(&from.y))]);
+    ParameterMap { linear, translation: at(map.point(&from.origin) - onto.origin) }
+}
+
+/// Curves that belong to no edge follow the plain scaling; those that were not understood stay, with a note.
+pub(super) fn free_curves(
+    model: &Model,
+    what: &Scope,
+    plain: &Affine,
+    changes: &mut ChangeSet,
+    notes: &mut Vec<Diagnostic>,
+) {
+    if *what != Scope::Part {
+        return;
     }
-    curve.transformed(&mover.map).map_err(|error| error.to_string())
+    for &id in &model.free_curves {
+        let entity = Some(model.origins.curves[id].to_string());
+        let stays = match &model.brep.curves[id] {
+            Carried::Read(curve) => match curve.transformed(plain) {
+                Ok(image) => {
+                    if image != *curve {
+                        changes.free_curves.insert(id, image);
+                    }
+                    continue;
+                }
+                Err(error) => error.to_string(),
+            },
+            Carried::Unread { entity, reason } => format!("{entity}: {reason}"),
+        };
+        notes.push(Diagnostic {
+            code: "scale.curve-stayed",
+            severity: Severity::Warning,
+            entity,
+            span: None,
+            message: format!("curve stays as it is: {stays}"),
+        });
+    }
 }

@@ -1,38 +1,55 @@
 //! From a model and parameters to a change set: which element gets which motion.
 //!
-//! Faces with held loops are fixed and stretched; what hangs on a held loop moves rigidly with it; all else in the
-//! scope gets its exact affine image. Each shared edge and vertex is moved once. Faces outside the scope stay, and
-//! a face of the scope may not share an edge with them.
+//! In order: [`target`] names loops and faces, [`flood`] finds what hangs on them, [`base`] lays out the faces that bear
+//! them, [`piece`] gives every feature its motion, cut at a [`wall`] where its ends must part, [`stretch`] runs the
+//! numeric core on the faces between, [`follow`] says which element follows which motion, [`clear`] looks whether they
+//! stay clear of each other, and [`assemble`] makes each element's [`image`] once, however many faces share it.
+//!
+//! Faces outside the scope stay, and a face of the scope may not share an edge with them.
 //!
 //! Pure: no I/O. All or nothing.
 
 mod assemble;
-mod hold;
+mod base;
+mod carrier;
+mod clear;
+mod contour;
+mod flood;
+mod follow;
+mod held;
+mod image;
+mod pcurve;
+mod piece;
 mod report;
 mod rigid;
 mod scope;
 mod stretch;
+mod target;
+mod wall;
 
 use crate::ops::net::layout;
 pub use crate::ops::net::layout::inner_loops;
 pub use report::{FaceMeasures, GroupMeasures, LoopMeasures, Measures, SkinMeasures};
 pub use scope::Scope;
+pub use target::{HoldTarget, LoopFilter};
 
 use super::scaling::{Hold, Scaling};
-use crate::brep::{EdgeId, LoopId};
+use crate::brep::FaceId;
 use crate::diagnostic::Diagnostic;
 use crate::model::{ChangeSet, Model};
 use crate::ops::OperationError;
 
-/// What is to be held.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum HoldTarget {
-    /// All inner loops of the B-spline faces in scope.
-    InnerLoops,
-    /// One loop.
-    Loop(LoopId),
-    /// The inner loop that an edge belongs to.
-    Edge(EdgeId),
+/// What becomes of the walls between the ends of a held feature.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Wall {
+    /// They keep their lengths, and with them the thickness of the material at the feature; between two planes that
+    /// the scaling moves apart the longest straight wall is made longer.
+    #[default]
+    Rigid,
+    /// As rigid, but two planes that the scaling moves apart are refused.
+    Strict,
+    /// They keep their cross-section and are made longer, so that the material is as thick as the scaling makes it.
+    Slide,
 }
 
 /// Parameters of the operation on a model. Lengths are in file units.
@@ -46,6 +63,10 @@ pub struct Params {
     pub hold: Vec<HoldTarget>,
     /// How they are held.
     pub mode: Hold,
+    /// What becomes of walls.
+    pub wall: Wall,
+    /// Faces that must stay scaled: a hold that spreads to one is refused.
+    pub stop: Vec<FaceId>,
 }
 
 /// What is to be done, and what is known about it beforehand.
@@ -69,14 +90,17 @@ pub fn plan(model: &Model, params: &Params) -> Result<Plan, OperationError> {
     scope::refuse_torn_neighbours(model, &faces)?;
     let mut notes = scope::staying(model, &faces);
     notes.extend(scope::placed(model, &faces));
-    let held = hold::find(model, &faces, params, &mut notes)?;
+    let held = flood::find(model, &faces, params, &mut notes)?;
     let moves = matches!(params.mode, Hold::Pinned(Some(_))) && !held.bases.is_empty();
     if plain.is_identity() && !moves {
         return Ok(Plan { change_set: ChangeSet::default(), measures: Measures::default(), notes });
     }
-    let stretched = stretch::stretch(model, &held, params)?;
-    let measures = report::measure(model, &held, &stretched)?;
-    let change_set =
-        assemble::change_set(model, &faces, &held, &stretched, &plain, &mut notes, &params.scope)?;
+    let stretched = stretch::stretch(model, &held, params, &plain)?;
+    notes.extend(report::notes(model, &held, &stretched, params.wall));
+    let follow = follow::follow(model, &held, &stretched)?;
+    clear::refuse_overlaps(model, &held, &follow, &plain)?;
+    let mut change_set = assemble::change_set(model, &faces, &held, &stretched, &follow, &plain)?;
+    let measures = report::measure(model, &held, &stretched, &change_set)?;
+    assemble::free_curves(model, &params.scope, &plain, &mut change_set, &mut notes);
     Ok(Plan { change_set, measures, notes })
 }

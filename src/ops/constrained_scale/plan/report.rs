@@ -2,16 +2,21 @@
 
 use serde::Serialize;
 
-use super::hold::Held;
-use super::layout::spline_of;
+use super::Wall;
+use super::contour::SpaceLoop;
+use super::held::Held;
 use super::scope::face_name;
-use super::stretch::{SolvedGroup, Stretched};
+use super::stretch::{Solved, Stretched};
+use crate::brep::{LoopId, edge_range};
+use crate::diagnostic::{Diagnostic, Severity};
 use crate::geometry::nurbs::Deviation;
-use crate::model::Model;
+use crate::math::Point3;
+use crate::model::{ChangeSet, Model};
 use crate::ops::OperationError;
 use crate::ops::constrained_scale::measures::{
     MotionDeviation, REPORT_SAMPLES, certified, motion_deviation, quality,
 };
+use crate::ops::constrained_scale::motion::Motion;
 use crate::ops::constrained_scale::skins::Thickness;
 
 /// Figures of all faces with held loops.
@@ -71,11 +76,15 @@ pub struct FaceMeasures {
     pub bending_ratio: Option<f64>,
 }
 
-/// Figures of one group of held loops.
+/// Figures of held loops that move as one.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GroupMeasures {
     /// Its loops.
     pub loops: Vec<LoopMeasures>,
+    /// The motion `x -> linear x + translation` of the loops and of all that hangs on them, row by row.
+    pub linear: [[f64; 3]; 3],
+    /// Its translation, in file units.
+    pub translation: [f64; 3],
     /// Its normal after the scaling.
     pub axis: [f64; 3],
     /// Displacement that the solve chose, in file units.
@@ -104,7 +113,12 @@ pub struct LoopMeasures {
 const RIGIDITY: f64 = 1e-12;
 
 /// Measures all stretched faces and held loops.
-pub(super) fn measure(model: &Model, held: &Held, stretched: &Stretched) -> Result<Measures, OperationError> {
+pub(super) fn measure(
+    model: &Model,
+    held: &Held,
+    stretched: &Stretched,
+    changes: &ChangeSet,
+) -> Result<Measures, OperationError> {
     let faces = stretched.faces.iter().map(|(&id, face)| {
         let (q, proved) = (quality(face, REPORT_SAMPLES), certified(face));
         let bound = |part: Option<Deviation>| part.map(|part| part.bound).filter(|bound| bound.is_finite());
@@ -124,29 +138,7 @@ pub(super) fn measure(model: &Model, held: &Held, stretched: &Stretched) -> Resu
         }
     });
     let faces = faces.collect();
-    let mut groups = Vec::new();
-    for SolvedGroup { loops, group, residual } in &stretched.groups {
-        let mut measured = Vec::new();
-        for &(face, k) in loops {
-            let (id, contour, _) = &held.bases[&face].held[k];
-            let before = spline_of(model, face).expect("a face with held loops is a B-spline");
-            let after = &stretched.faces[&face].surface;
-            let deviation = motion_deviation(before, after, &contour.points, &group.motion);
-            let (face, held) = (face_name(model, face), model.origins.loops[*id].to_string());
-            let MotionDeviation { rigid, relative, rounding } = deviation;
-            if relative.is_nan() || relative > RIGIDITY + rounding {
-                return Err(OperationError::RigidityLost { face, held, deviation: relative });
-            }
-            measured.push(LoopMeasures { held, face, motion_deviation: relative, rigid_deviation: rigid });
-        }
-        groups.push(GroupMeasures {
-            loops: measured,
-            axis: group.motion.axis.into(),
-            shift: group.motion.shift().into(),
-            merged: group.merged,
-            residual: *residual,
-        });
-    }
+    let groups = stretched.pieces.iter().map(|solved| group(model, held, stretched, changes, solved));
     let skins = stretched.skins.iter().map(|(faces, pair)| {
         let numbers = |t: Thickness| [t.least, t.greatest, t.mean];
         SkinMeasures {
@@ -157,5 +149,102 @@ pub(super) fn measure(model: &Model, held: &Held, stretched: &Stretched) -> Resu
             least_ratio: pair.least_ratio,
         }
     });
-    Ok(Measures { faces, groups, skins: skins.collect() })
+    Ok(Measures { faces, groups: groups.collect::<Result<_, _>>()?, skins: skins.collect() })
+}
+
+fn group(
+    model: &Model,
+    held: &Held,
+    stretched: &Stretched,
+    changes: &ChangeSet,
+    solved: &Solved,
+) -> Result<GroupMeasures, OperationError> {
+    let motion = &solved.piece.motion;
+    let mut loops = Vec::new();
+    for &number in &solved.piece.part.loops {
+        let of = &held.loops[number];
+        let net = held.bases[&of.face].net().zip(stretched.faces.get(&of.face));
+        let deviation = match net {
+            Some((base, after)) => {
+                let contour = base.held.iter().find(|(k, _)| *k == number).map(|(_, contour)| contour);
+                let points = contour.map_or(&[][..], |contour| &contour.points);
+                motion_deviation(&base.carrier.surface, &after.surface, points, motion)
+            }
+            None => curve_deviation(model, of.id, changes, motion)?,
+        };
+        let (face, held) = (face_name(model, of.face), model.origins.loops[of.id].to_string());
+        let MotionDeviation { rigid, relative, rounding } = deviation;
+        if relative.is_nan() || relative > RIGIDITY + rounding {
+            return Err(OperationError::RigidityLost { face, held, deviation: relative });
+        }
+        loops.push(LoopMeasures { held, face, motion_deviation: relative, rigid_deviation: rigid });
+    }
+    Ok(GroupMeasures {
+        loops,
+        linear: [0, 1, 2].map(|i| [0, 1, 2].map(|k| motion.linear[(i, k)])),
+        translation: motion.apply(&Point3::origin()).coords.into(),
+        axis: motion.axis.into(),
+        shift: motion.shift().into(),
+        merged: solved.merged,
+        residual: solved.residual,
+    })
+}
+
+/// Deviation of the new curves of a loop from the motion of the old ones: all there is where a loop lies on a plane.
+fn curve_deviation(
+    model: &Model,
+    id: LoopId,
+    changes: &ChangeSet,
+    motion: &Motion,
+) -> Result<MotionDeviation, OperationError> {
+    let mut pairs: Vec<(Point3<f64>, Point3<f64>)> = Vec::new();
+    for &coedge in &model.brep.loops[id].coedges {
+        let edge = model.brep.coedges[coedge].edge;
+        let before = SpaceLoop::points_of(model, edge)?;
+        let (Some(range), Some(old)) = (edge_range(&model.brep, edge), model.brep.curve_of(edge).read())
+        else {
+            continue;
+        };
+        let new = changes.curves.get(&edge).unwrap_or(old);
+        let last = (before.len() - 1) as f64;
+        for (k, point) in before.into_iter().enumerate() {
+            let expected = motion.apply(&point);
+            let t = range.start + (range.end - range.start) * (k as f64 / last);
+            let at = if motion.is_rigid() { t } else { new.parameter_of(&expected, None) };
+            pairs.push((point, new.point_wrapped(at)));
+        }
+    }
+    Ok(MotionDeviation::of_pairs(&pairs, motion))
+}
+
+/// What the report says beside figures: features that were joined, walls that became longer by themselves.
+pub(super) fn notes(model: &Model, held: &Held, stretched: &Stretched, wall: Wall) -> Vec<Diagnostic> {
+    let mut notes = Vec::new();
+    for solved in stretched.pieces.iter().filter(|solved| solved.merged) {
+        let loops = solved.piece.part.loops.iter();
+        let names: Vec<String> = loops.map(|&k| model.origins.loops[held.loops[k].id].to_string()).collect();
+        notes.push(warning(
+            "scale.features-merged",
+            names.first().cloned(),
+            format!("too near to each other to part, the loops {} move as one", names.join(", ")),
+        ));
+    }
+    if wall == Wall::Rigid {
+        for ring in &stretched.rings {
+            let faces: Vec<String> = ring.faces.iter().map(|&f| face_name(model, f)).collect();
+            notes.push(warning(
+                "scale.wall-length-scaled",
+                faces.first().cloned(),
+                format!(
+                    "the wall of {} is made longer: planes at its ends move apart, and only its cross-section is held",
+                    faces.join(", ")
+                ),
+            ));
+        }
+    }
+    notes
+}
+
+fn warning(code: &'static str, entity: Option<String>, message: String) -> Diagnostic {
+    Diagnostic { code, severity: Severity::Warning, entity, span: None, message }
 }

@@ -1,113 +1,144 @@
-//! Runs the numeric core on the faces with held loops, one run for each set of faces that share groups.
+//! Runs the numeric core on the faces that have to be stretched, one run for each set of faces that share groups, and
+//! gives every group its motion, those that end on planes alone as well.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
 use super::Params;
-use super::hold::Held;
-use super::layout::spline_of;
+use super::held::Held;
+use super::piece::{FaceRule, Former, Piece};
 use super::scope::face_name;
+use super::wall::{Ring, Uses};
 use crate::brep::FaceId;
+use crate::math::Affine;
 use crate::model::Model;
 use crate::ops::OperationError;
-use crate::ops::constrained_scale::faces::scale_faces;
-use crate::ops::constrained_scale::motion::Motion;
+use crate::ops::constrained_scale::faces::scale_faces_by;
 use crate::ops::constrained_scale::skins::SkinPair;
-use crate::ops::constrained_scale::task::{FaceTask, Group, HeldLoop, Scaled, ScaledFace};
+use crate::ops::constrained_scale::task::{FaceTask, HeldLoop, Scaled, ScaledFace};
 
-/// Stretched faces and the motions of all groups.
+/// Stretched faces and the pieces of all features.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Stretched {
-    /// Faces with held loops.
+    /// Faces that were stretched.
     pub faces: BTreeMap<FaceId, ScaledFace>,
-    /// Motion of each group of the hold.
-    pub motions: Vec<Motion>,
-    /// Groups as they were solved.
-    pub groups: Vec<SolvedGroup>,
-    /// Opposite faces that share a group.
+    /// Pieces with their final motions.
+    pub pieces: Vec<Solved>,
+    /// Walls that became longer, each with the pieces that it lies between in the order of its faces.
+    pub rings: Vec<Ring>,
+    /// Opposite faces that share a piece.
     pub skins: Vec<([FaceId; 2], SkinPair)>,
 }
 
-/// A group as it was solved.
+/// A piece as it was solved.
 #[derive(Debug, Clone)]
-pub(super) struct SolvedGroup {
-    /// Faces, and indices among their held loops.
-    pub loops: Vec<(FaceId, usize)>,
-    /// Its motion.
-    pub group: Group,
-    /// Residual of the run that solved it.
+pub(super) struct Solved {
+    /// The piece.
+    pub piece: Piece,
+    /// Whether features were joined in it because they lie too near to each other.
+    pub merged: bool,
+    /// Residual of the run that solved it; zero where nothing had to be solved.
     pub residual: f64,
 }
 
-/// Scales all faces with held loops.
-pub(super) fn stretch(model: &Model, held: &Held, params: &Params) -> Result<Stretched, OperationError> {
-    let sets = connected(held);
-    // Faces of different sets share no unknown; results are gathered in the order of the sets.
-    let solved: Vec<_> = sets.par_iter().map(|faces| run(model, held, params, faces)).collect();
+/// Groups and faces that share unknowns.
+#[derive(Debug, Clone, Default)]
+struct Cluster {
+    groups: BTreeSet<usize>,
+    faces: BTreeSet<FaceId>,
+}
+
+/// Stretches all faces with held loops that are not planes.
+pub(super) fn stretch(
+    model: &Model,
+    held: &Held,
+    params: &Params,
+    plain: &Affine,
+) -> Result<Stretched, OperationError> {
+    let uses = Uses::new(model);
+    let former = Former { model, held, params, plain, uses: &uses };
+    let clusters = clusters(held);
+    // Different clusters share no unknown; results are gathered in their order.
+    let solved: Vec<_> = clusters.par_iter().map(|cluster| run(&former, cluster)).collect();
     let mut out = Stretched::default();
-    let mut motions = vec![None; held.groups];
-    for (faces, solved) in sets.iter().zip(solved) {
-        let Scaled { faces: scaled, groups, skins, residual } = solved?;
-        out.skins.extend(skins.into_iter().map(|pair| (pair.faces.map(|f| faces[f]), pair)));
-        for group in groups {
-            let loops: Vec<(FaceId, usize)> = group.loops.iter().map(|&(f, k)| (faces[f], k)).collect();
-            for (face, k) in &loops {
-                motions[held.bases[face].held[*k].2] = Some(group.motion.clone());
-            }
-            out.groups.push(SolvedGroup { loops, group, residual });
-        }
-        out.faces.extend(faces.iter().copied().zip(scaled));
+    for found in solved {
+        let Stretched { faces, pieces, rings, skins } = found?;
+        out.faces.extend(faces);
+        out.pieces.extend(pieces);
+        out.rings.extend(rings);
+        out.skins.extend(skins);
     }
-    out.motions = motions.into_iter().map(|m| m.expect("every group has a loop on a base")).collect();
     Ok(out)
 }
 
-fn run(model: &Model, held: &Held, params: &Params, faces: &[FaceId]) -> Result<Scaled, OperationError> {
-    let tasks: Vec<FaceTask<'_>> = faces
-        .iter()
-        .map(|&face| {
-            let base = &held.bases[&face];
-            let held = base.held.iter().map(|(_, contour, group)| HeldLoop {
-                contour: contour.clone(),
-                group: *group,
-                hold: params.mode,
-            });
-            FaceTask {
-                name: face_name(model, face),
-                surface: spline_of(model, face).expect("a face with held loops is a B-spline"),
-                held: held.collect(),
-                outer: base.outer.clone(),
-                scaled: base.scaled.clone(),
-            }
-        })
-        .collect();
-    Ok(scale_faces(&tasks, &params.scaling)?)
-}
-
-/// Faces with held loops in sets that share groups, each ascending, in order of their first faces.
-fn connected(held: &Held) -> Vec<Vec<FaceId>> {
-    let mut set_of_group: Vec<Option<usize>> = vec![None; held.groups];
-    let mut sets: Vec<Vec<FaceId>> = Vec::new();
-    for (&face, base) in &held.bases {
-        let mut at = sets.len();
-        sets.push(vec![face]);
-        for (_, _, group) in &base.held {
-            if let Some(other) = set_of_group[*group].filter(|&other| other != at) {
-                let (keep, drop) = (at.min(other), at.max(other));
-                let moved = std::mem::take(&mut sets[drop]);
-                sets[keep].extend(moved);
-                for set in set_of_group.iter_mut().filter(|s| **s == Some(drop)) {
-                    *set = Some(keep);
-                }
-                at = keep;
-            }
-            set_of_group[*group] = Some(at);
+fn run(former: &Former<'_>, cluster: &Cluster) -> Result<Stretched, OperationError> {
+    let faces: Vec<FaceId> = cluster.faces.iter().copied().collect();
+    let mut out = Stretched::default();
+    if faces.is_empty() {
+        for &group in &cluster.groups {
+            let formed = former.form(&[group])?;
+            out.rings.extend(formed.rings);
+            out.pieces.extend(formed.pieces.into_iter().map(|piece| Solved {
+                piece,
+                merged: false,
+                residual: 0.0,
+            }));
+        }
+        return Ok(out);
+    }
+    let tasks: Vec<FaceTask<'_>> = faces.iter().map(|&face| task(former, face)).collect();
+    let rule = FaceRule { former, faces: &faces };
+    let Scaled { faces: scaled, sets, groups, skins, residual } =
+        scale_faces_by(&tasks, &former.params.scaling, &rule)?;
+    // The rule gives the same pieces again; only the solve knows how far they moved.
+    let mut solved = groups.into_iter();
+    for set in &sets {
+        let formed = former.form(set)?;
+        out.rings.extend(formed.rings);
+        for (mut piece, group) in formed.pieces.into_iter().zip(solved.by_ref()) {
+            piece.motion = group.motion;
+            out.pieces.push(Solved { piece, merged: set.len() > 1, residual });
         }
     }
-    sets.retain(|s| !s.is_empty());
-    for set in &mut sets {
-        set.sort_unstable();
+    out.skins = skins.into_iter().map(|pair| (pair.faces.map(|f| faces[f]), pair)).collect();
+    out.faces = faces.into_iter().zip(scaled).collect();
+    Ok(out)
+}
+
+fn task<'a>(former: &Former<'a>, face: FaceId) -> FaceTask<'a> {
+    let base = former.held.bases[&face].net().expect("a face of a cluster is stretched");
+    let held = base.held.iter().map(|(number, contour)| HeldLoop {
+        contour: contour.clone(),
+        group: former.held.loops[*number].group,
+        hold: former.params.mode,
+    });
+    FaceTask {
+        name: face_name(former.model, face),
+        surface: &base.carrier.surface,
+        held: held.collect(),
+        outer: base.outer.clone(),
+        scaled: base.scaled.clone(),
     }
-    sets
+}
+
+/// Groups in sets that share stretched faces, in order of their first groups.
+fn clusters(held: &Held) -> Vec<Cluster> {
+    let mut clusters: Vec<Cluster> = Vec::new();
+    for group in 0..held.groups {
+        let loops = held.loops.iter().filter(|l| l.group == group);
+        let faces: BTreeSet<FaceId> =
+            loops.map(|l| l.face).filter(|face| held.bases[face].net().is_some()).collect();
+        let (near, mut apart): (Vec<Cluster>, Vec<Cluster>) =
+            clusters.into_iter().partition(|cluster| !cluster.faces.is_disjoint(&faces));
+        let mut cluster = Cluster { groups: BTreeSet::from([group]), faces };
+        for other in near {
+            cluster.groups.extend(other.groups);
+            cluster.faces.extend(other.faces);
+        }
+        apart.push(cluster);
+        clusters = apart;
+    }
+    clusters.sort_by_key(|cluster| cluster.groups.first().copied());
+    clusters
 }
