@@ -144,7 +144,7 @@ pub struct Document {
 #[derive(Debug)]
 enum Structure {
     Step(step::ExchangeStructure),
-    Iges(iges::ExchangeStructure),
+    Iges(Box<iges::ExchangeStructure>),
 }
 
 impl Document {
@@ -159,7 +159,7 @@ impl Document {
     /// Parses an unpacked file. What is wrong inside it goes to the sink.
     pub fn parse(unpacked: Unpacked, sink: &mut dyn Sink) -> Self {
         let structure = match unpacked.format {
-            Format::Iges => Structure::Iges(iges::ExchangeStructure::parse(unpacked.source, sink)),
+            Format::Iges => Structure::Iges(Box::new(iges::ExchangeStructure::parse(unpacked.source, sink))),
             Format::Step | Format::Gzip | Format::Zip => {
                 Structure::Step(step::ExchangeStructure::parse(unpacked.source, sink))
             }

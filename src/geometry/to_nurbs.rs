@@ -217,7 +217,7 @@ fn composite(whole: &Composite<Curve>, (start, end): (f64, f64)) -> Result<Nurbs
         return Err(bad);
     }
     let mut pieces = Vec::new();
-    for (segment, breaks) in whole.segments().iter().zip(whole.breaks().array_windows::<2>()) {
+    for (segment, breaks) in whole.segments().iter().zip(whole.breaks().windows(2)) {
         let (low, high) = (start.max(breaks[0]), end.min(breaks[1]));
         if low >= high {
             continue;

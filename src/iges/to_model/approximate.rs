@@ -29,7 +29,7 @@ pub(super) fn hermite(
         if off <= tolerance {
             return Ok((curve, off));
         }
-        let middles: Vec<f64> = breaks.array_windows::<2>().map(|[a, b]| 0.5 * (a + b)).collect();
+        let middles: Vec<f64> = breaks.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
         breaks.extend(middles);
         breaks.sort_by(f64::total_cmp);
     }
@@ -39,11 +39,12 @@ pub(super) fn hermite(
 fn pieces(course: &dyn Fn(f64) -> Jet, breaks: &[f64]) -> Result<NurbsCurve3, ReadError> {
     let mut net: Vec<[f64; 4]> = Vec::with_capacity(3 * breaks.len());
     let homogeneous = |p: Point3<f64>| [p.x, p.y, p.z, 1.0];
-    for [a, b] in breaks.array_windows::<2>() {
+    for pair in breaks.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
         let third = (b - a) / 3.0;
         // At a corner of the course each piece has its own tangent.
         let inside = (b - a) * 1e-9;
-        let ((p, _), (q, _)) = (course(*a), course(*b));
+        let ((p, _), (q, _)) = (course(a), course(b));
         let (dp, dq) = (course(a + inside).1, course(b - inside).1);
         net.pop();
         net.extend([p, p + dp * third, q - dq * third, q].map(homogeneous));
@@ -56,7 +57,8 @@ fn pieces(course: &dyn Fn(f64) -> Jet, breaks: &[f64]) -> Result<NurbsCurve3, Re
 
 fn distance(course: &dyn Fn(f64) -> Jet, curve: &NurbsCurve3, breaks: &[f64]) -> f64 {
     let mut worst = 0.0_f64;
-    for [a, b] in breaks.array_windows::<2>() {
+    for pair in breaks.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
         for part in [0.25, 0.5, 0.75] {
             let t = a + (b - a) * part;
             worst = worst.max((course(t).0 - curve.point_at(t)).norm());

@@ -69,7 +69,7 @@ fn samples(piece: &Piece) -> impl Iterator<Item = Point3<f64>> + '_ {
 
 fn length(piece: &Piece) -> f64 {
     let points: Vec<_> = samples(piece).collect();
-    points.array_windows::<2>().map(|[a, b]| (a - b).norm()).sum()
+    points.windows(2).map(|pair| (pair[0] - pair[1]).norm()).sum()
 }
 
 /// Opposite sides of a closed surface run alike.

@@ -136,7 +136,8 @@ const STEPS: usize = 8;
 impl<'c> Way<'c> {
     fn along(curve: &'c Curve, breaks: &[f64]) -> Self {
         let mut parameters = vec![breaks[0]];
-        for [a, b] in breaks.array_windows::<2>() {
+        for pair in breaks.windows(2) {
+            let (a, b) = (pair[0], pair[1]);
             parameters.extend((1..=CELLS).map(|k| a + (b - a) * f64::from(k) / f64::from(CELLS)));
         }
         let mut way = Self { curve, parameters, lengths: vec![0.0], rule: gauss_legendre(POINTS) };

@@ -63,8 +63,8 @@ pub(super) fn parametric_curve(fields: &Fields<'_>) -> Result<NurbsCurve3, ReadE
         return Err(ReadError::Empty("segments"));
     }
     let mut net = Vec::with_capacity(CUBIC * segments + 1);
-    for (segment, [low, high]) in coefficients.chunks_exact(12).zip(breaks.array_windows::<2>()) {
-        let axis = |k: usize| bezier(&segment[4 * k..4 * k + 4], high - low);
+    for (segment, ends) in coefficients.chunks_exact(12).zip(breaks.windows(2)) {
+        let axis = |k: usize| bezier(&segment[4 * k..4 * k + 4], ends[1] - ends[0]);
         let (x, y, z) = (axis(0), axis(1), axis(2));
         // Where two pieces meet, the latter says where.
         net.truncate(net.len().saturating_sub(1));

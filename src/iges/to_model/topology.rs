@@ -313,11 +313,8 @@ impl Builder<'_, '_> {
         index: i64,
         shared: &mut Shared,
     ) -> Result<EdgeItem, ReadError> {
-        if !shared.lists.contains_key(&list) {
-            let items = self.edge_items(list);
-            shared.lists.insert(list, items);
-        }
-        let items = shared.lists[&list].as_ref().map_err(Clone::clone)?;
+        let items = shared.lists.entry(list).or_insert_with(|| self.edge_items(list));
+        let items = items.as_ref().map_err(|error| error.clone())?;
         let found = usize::try_from(index).ok().and_then(|at| items.get(at.checked_sub(1)?)).copied();
         found.ok_or(ReadError::Index { field: "index", index, list, count: items.len() })
     }
