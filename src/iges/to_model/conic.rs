@@ -166,16 +166,17 @@ mod tests {
 
     #[test]
     fn conics_pass_through_their_ends_wherever_they_lie() {
-        let shapes: [([f64; 6], [f64; 2], [f64; 2], &str); 3] = [
-            ([0.25, 0.0, 1.0, 0.0, 0.0, -1.0], [2.0, 0.0], [0.0, 1.0], "ellipse"),
-            ([1.0, 0.0, 0.0, 0.0, -4.0, 0.0], [-2.0, 1.0], [4.0, 4.0], "parabola"),
-            ([1.0, 0.0, -1.0, 0.0, 0.0, -1.0], [2.0, 3f64.sqrt()], [1.0, 0.0], "hyperbola"),
+        // Coefficients and two points.
+        let shapes = [
+            ("ellipse", [0.25, 0.0, 1.0, 0.0, 0.0, -1.0], [[2.0, 0.0], [0.0, 1.0]]),
+            ("parabola", [1.0, 0.0, 0.0, 0.0, -4.0, 0.0], [[-2.0, 1.0], [4.0, 4.0]]),
+            ("hyperbola", [1.0, 0.0, -1.0, 0.0, 0.0, -1.0], [[2.0, 3f64.sqrt()], [1.0, 0.0]]),
         ];
-        for (coefficients, start, end, kind) in shapes {
+        for (kind, coefficients, ends) in shapes {
             for (angle, shift) in [(0.0, [0.0, 0.0]), (0.7, [3.0, -2.0]), (-2.5, [0.1, 5.0])] {
                 let shift = Vector2::new(shift[0], shift[1]);
                 let turn = Matrix2::new(f64::cos(angle), -f64::sin(angle), f64::sin(angle), f64::cos(angle));
-                let [p, q] = [start, end].map(|p| Point2::from(turn * Vector2::new(p[0], p[1]) + shift));
+                let [p, q] = ends.map(|p| Point2::from(turn * Vector2::new(p[0], p[1]) + shift));
                 let k = moved(coefficients, angle, shift);
                 let (curve, (from, to)) = conic(k, 7.0, p, q).expect(kind);
                 assert_eq!(curve.kind(), kind);
