@@ -14,6 +14,7 @@ pub mod cli;
 pub mod cloud;
 pub mod diagnostic;
 pub mod diff;
+pub mod digest;
 pub mod document;
 pub mod exchange;
 pub mod geometry;

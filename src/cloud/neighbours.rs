@@ -138,7 +138,7 @@ impl Neighbours {
     }
 
     /// Distance of neighbouring points: the root of the area of one point, from the circles round some points that hold
-    /// [`AROUND`] others. 0 for a cloud of one place.
+    /// `AROUND` others. 0 for a cloud of one place.
     #[must_use]
     pub fn spacing(&self) -> f64 {
         let n = self.points.len();

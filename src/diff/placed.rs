@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::Named;
-use crate::brep::{BodyId, FaceId};
+use crate::brep::{BodyId, EdgeSampling, FaceId, sample_edge};
 use crate::geometry::Carried;
 use crate::math::{Affine, BoundingBox, Point3};
 use crate::mesh::{Mesh, Tolerances, tessellate_faces};
@@ -151,18 +151,26 @@ pub(super) fn vertices(model: &Model, face: FaceId) -> impl Iterator<Item = Poin
     edges.flat_map(|edge| [edge.start, edge.end]).map(|vertex| brep.vertices[vertex].point)
 }
 
-/// Triangles of the faces of a body, each by itself where not all together.
+/// Triangles of the faces of a body, each by itself and as fine as its own size asks: a small face of a large body would
+/// else be all chord.
 fn mesh_body(model: &Model, body: BodyId, meshes: &mut BTreeMap<FaceId, Mesh>, missing: &mut Vec<FaceId>) {
-    let faces: Vec<FaceId> = faces_of(model, body).collect();
-    let points: Vec<Point3<f64>> = faces.iter().flat_map(|&face| vertices(model, face)).collect();
-    let size = BoundingBox::of(&points).diagonal();
-    let tolerances = Tolerances::for_size(if size > 0.0 { size } else { 1.0 });
-    for face in faces {
+    for face in faces_of(model, body) {
+        let size = size(model, face);
+        let tolerances = Tolerances::for_size(if size > 0.0 { size } else { 1.0 });
         match tessellate_faces(&model.brep, &[face], &tolerances) {
             Ok(mesh) => drop(meshes.insert(face, mesh)),
             Err(_) => missing.push(face),
         }
     }
+}
+
+/// Diagonal of the box of the bounds of a face: a closed edge has one vertex and is no point.
+fn size(model: &Model, face: FaceId) -> f64 {
+    let brep = &model.brep;
+    let edges = brep.coedges_of(face).map(|coedge| brep.coedges[coedge].edge);
+    let points = edges.filter_map(|edge| sample_edge(brep, edge, &EdgeSampling::default())).flatten();
+    let points: Vec<Point3<f64>> = points.map(|at| at.point).collect();
+    BoundingBox::of(&points).diagonal()
 }
 
 /// Word for carried geometry: its kind, or the entity that is not read.

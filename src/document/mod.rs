@@ -6,6 +6,7 @@
 
 pub mod cloud;
 mod compressed;
+pub mod proof;
 
 use crate::diagnostic::Sink;
 use crate::exchange::Patch;
@@ -13,6 +14,7 @@ use crate::model::{ChangeSet, Model, Origin};
 use crate::source::{Source, SourceTooLarge};
 use crate::{iges, step};
 pub use compressed::CompressedError;
+pub use proof::{CopyResiduals, ProofError};
 
 /// What the bytes of a file are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -17,6 +17,25 @@ const SINGULAR: f64 = 1e-14;
 /// Places at which opposite borders of a composite surface are compared.
 const BORDER_SAMPLES: usize = 8;
 
+/// Where a surface repeats itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Repetition {
+    starts: (f64, f64),
+    periods: (Option<f64>, Option<f64>),
+}
+
+impl Repetition {
+    /// Parameters within the domain of the directions that repeat themselves.
+    #[must_use]
+    pub fn wrapped(&self, u: f64, v: f64) -> (f64, f64) {
+        let wrap = |x: f64, start: f64, period: Option<f64>| match period {
+            Some(p) if !(x >= start && x <= start + p) => start + (x - start).rem_euclid(p),
+            _ => x,
+        };
+        (wrap(u, self.starts.0, self.periods.0), wrap(v, self.starts.1, self.periods.1))
+    }
+}
+
 impl Surface {
     /// Point at `(u, v)`.
     #[must_use]
@@ -90,13 +109,14 @@ impl Surface {
     /// Parameters within the domain of the directions that repeat themselves.
     #[must_use]
     pub fn wrapped(&self, u: f64, v: f64) -> (f64, f64) {
-        let ((u0, _), (v0, _)) = self.domain();
-        let (pu, pv) = self.periods();
-        let wrap = |x: f64, start: f64, period: Option<f64>| match period {
-            Some(p) if !(x >= start && x <= start + p) => start + (x - start).rem_euclid(p),
-            _ => x,
-        };
-        (wrap(u, u0, pu), wrap(v, v0, pv))
+        self.repetition().wrapped(u, v)
+    }
+
+    /// Where the surface repeats itself, for many parameters: a B-spline looks at its whole net to tell.
+    #[must_use]
+    pub fn repetition(&self) -> Repetition {
+        let ((u, _), (v, _)) = self.domain();
+        Repetition { starts: (u, v), periods: self.periods() }
     }
 
     /// Unit normal `du × dv / |du × dv|`; `None` where the parametrisation is singular.

@@ -294,12 +294,12 @@ fn hyperbola(frame: &Frame, a: f64, b: f64, (start, end): (f64, f64)) -> Option<
 }
 
 /// The generatrix of a cylinder or cone, by the length along the axis.
-fn straight(frame: &Frame, radius: f64, slope: f64) -> Curve {
+pub(super) fn straight(frame: &Frame, radius: f64, slope: f64) -> Curve {
     Curve::Line { origin: frame.origin + frame.x * radius, direction: frame.x * slope + frame.z }
 }
 
 /// The circle that a sphere or torus is turned from, in the plane of the first axis.
-fn meridian(frame: &Frame, major: f64, minor: f64) -> Curve {
+pub(super) fn meridian(frame: &Frame, major: f64, minor: f64) -> Curve {
     let origin = frame.origin + frame.x * major;
     Curve::Circle { frame: Frame { origin, x: frame.x, y: frame.z, z: -frame.y }, radius: minor }
 }

@@ -9,6 +9,7 @@ mod index;
 pub mod lower;
 mod name_table;
 pub mod parameter;
+pub mod proof;
 pub mod reverse_index;
 pub mod schema;
 pub mod section;

@@ -77,7 +77,7 @@ const REFUSED: [&str; 1] = ["DME.stp"];
 /// `RESURF_OCC_ALL=1` lifts it.
 const EVERY_RUN: u64 = 400_000;
 
-fn read(path: &Path) -> Model {
+pub(super) fn read(path: &Path) -> Model {
     let bytes = std::fs::read(path).expect("a file of the corpus");
     let mut sink = Diagnostics::default();
     let file = ExchangeStructure::parse(Source::new(bytes).expect("small"), &mut sink);

@@ -14,6 +14,8 @@ pub mod gram;
 pub mod interpolate;
 pub mod join;
 pub mod knot_vector;
+mod mended;
+mod open;
 pub mod project;
 mod refine;
 mod reshape;

@@ -59,7 +59,7 @@ pub fn quality(face: &ScaledFace, samples: usize) -> Quality {
     sums.quality()
 }
 
-/// Proved bounds of how far a face is from the plainly scaled surface; see [`deviation`].
+/// Proved bounds of how far a face is from the plainly scaled surface; see [`deviation()`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Certified {
     /// Over the cells in which some control point that acts is not held; none when there are no such cells.

@@ -5,7 +5,7 @@
 
 use super::SimplifyError;
 use crate::geometry::nurbs::{KnotVector, NurbsSurface, deviation_at_equal_parameters};
-use crate::ops::net::Mask;
+use crate::ops::net::{KnotRows, Mask};
 
 /// Distance, as a part of the surface's size, within which held control points may be off: rounding of a removal that is
 /// exact.
@@ -79,16 +79,11 @@ fn one_direction(
     let p = surface.knots_u().degree();
     let exact = EXACT * surface.bounding_box().diagonal();
     let per_length = homogeneous_share(surface);
-    let mut rows = Rows {
-        knots: surface.knots_u().knots().to_vec(),
-        net: surface.net().to_vec(),
-        p,
-        columns: surface.shape().1,
-    };
+    let mut rows = KnotRows::new(surface);
     // What the spans between distinct knots have cost so far.
-    let mut spent = vec![0.0; rows.knots.len()];
+    let mut spent = vec![0.0; surface.knots_u().knots().len()];
     let mut removed = 0;
-    while let Ok(knots) = KnotVector::new(p, rows.knots.clone()) {
+    while let Some(knots) = rows.knots() {
         let mask = match axis {
             Axis::U => held.control_points(&knots, surface.knots_v()),
             Axis::V => held.control_points(surface.knots_v(), &knots).transposed(),
@@ -125,11 +120,7 @@ fn one_direction(
             removed += 1;
         }
     }
-    let net = std::mem::take(&mut rows.net);
-    let rebuilt = KnotVector::new(p, rows.knots)
-        .ok()
-        .and_then(|knots| NurbsSurface::new(knots, surface.knots_v().clone(), net).ok());
-    rebuilt.map_or_else(|| (surface.clone(), 0), |s| (s, removed))
+    rows.surface().map_or_else(|| (surface.clone(), 0), |s| (s, removed))
 }
 
 /// How far a point of space moves at most for a unit of distance of homogeneous ones; 1 without weights.
@@ -140,108 +131,4 @@ fn homogeneous_share(surface: &NurbsSurface) -> f64 {
     let least = surface.net().iter().map(|p| p[3]).fold(f64::INFINITY, f64::min);
     let farthest = surface.control_points().map(|p| p.coords.norm()).fold(0.0, f64::max);
     (1.0 + farthest) / least
-}
-
-/// A net whose rows lie along the knots at work.
-struct Rows {
-    knots: Vec<f64>,
-    net: Vec<[f64; 4]>,
-    p: usize,
-    columns: usize,
-}
-
-/// Most rows that a removal works on, with one on each side.
-const WORK: usize = 16;
-
-impl Rows {
-    /// Last index of each interior knot, one for each value.
-    fn interior(&self) -> impl Iterator<Item = usize> + '_ {
-        let (p, n) = (self.p, self.knots.len() - self.p - 1);
-        (p + 1..n).filter(move |&r| self.knots[r] < self.knots[r + 1] && self.knots[r] < self.knots[n])
-    }
-
-    fn multiplicity(&self, r: usize) -> usize {
-        let value = self.knots[r];
-        self.knots[..=r].iter().rev().take_while(|k| **k == value).count()
-    }
-
-    fn point(&self, row: usize, column: usize) -> [f64; 4] {
-        self.net[row * self.columns + column]
-    }
-
-    /// Rows that change: from the first to the last.
-    fn changing(&self, r: usize) -> (usize, usize) {
-        (r - self.p, r - self.multiplicity(r))
-    }
-
-    /// Bound of the distance that removing a knot costs; `None` when it cannot go.
-    fn cost(&self, r: usize, held: &Mask, (exact, tolerance): (f64, f64), per_length: f64) -> Option<f64> {
-        let (first, last) = self.changing(r);
-        if first == 0 || last < first || last - first + 3 > WORK {
-            return None;
-        }
-        let mut worst = 0.0_f64;
-        for column in 0..self.columns {
-            let (_, error) = self.removal(r, column);
-            let error = error * per_length;
-            let stays = (first..=last).any(|row| held.contains(row, column));
-            if error > if stays { exact.min(tolerance) } else { tolerance } {
-                return None;
-            }
-            worst = worst.max(error);
-        }
-        Some(worst)
-    }
-
-    /// A5.8 for one knot and one column: the changed points, and the distance that bounds the curve's change.
-    fn removal(&self, r: usize, column: usize) -> ([[f64; 4]; WORK], f64) {
-        let (u, all) = (self.knots[r], &self.knots);
-        let (first, last) = self.changing(r);
-        let off = first - 1;
-        let mut temp = [[0.0; 4]; WORK];
-        temp[0] = self.point(off, column);
-        temp[last + 1 - off] = self.point(last + 1, column);
-        let (mut i, mut j) = (first, last);
-        let share = |k: usize| (u - all[k]) / (all[k + self.p + 1] - all[k]);
-        while j > i {
-            let (a, b) = (share(i), share(j));
-            let (left, right) = (temp[i - off - 1], temp[j - off + 1]);
-            let (pi, pj) = (self.point(i, column), self.point(j, column));
-            temp[i - off] = [0, 1, 2, 3].map(|c| (pi[c] - (1.0 - a) * left[c]) / a);
-            temp[j - off] = [0, 1, 2, 3].map(|c| (pj[c] - b * right[c]) / (1.0 - b));
-            i += 1;
-            j -= 1;
-        }
-        let error = if j < i {
-            distance(&temp[i - off - 1], &temp[j + 1 - off])
-        } else {
-            let a = share(i);
-            let (left, right) = (temp[i - off - 1], temp[i - off + 1]);
-            let mean = [0, 1, 2, 3].map(|c| a * right[c] + (1.0 - a) * left[c]);
-            distance(&self.point(i, column), &mean)
-        };
-        (temp, error)
-    }
-
-    fn remove(&mut self, r: usize) {
-        let (first, last) = self.changing(r);
-        let off = first - 1;
-        let drop = (2 * r - self.multiplicity(r) - self.p) / 2;
-        for column in 0..self.columns {
-            let (temp, _) = self.removal(r, column);
-            let (mut i, mut j) = (first, last);
-            while j > i {
-                self.net[i * self.columns + column] = temp[i - off];
-                self.net[j * self.columns + column] = temp[j - off];
-                i += 1;
-                j -= 1;
-            }
-        }
-        self.net.drain(drop * self.columns..(drop + 1) * self.columns);
-        self.knots.remove(r);
-    }
-}
-
-fn distance(a: &[f64; 4], b: &[f64; 4]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| (x - y).powi(2)).sum::<f64>().sqrt()
 }

@@ -116,7 +116,7 @@ impl Build<'_> {
                 let same = base.carrier.is_same();
                 let lines = || SurfaceParameters::Lines(Box::new(base.carrier.clone()));
                 let parameters = if same { SurfaceParameters::stay() } else { lines() };
-                Ok((Surface::Nurbs(scaled.surface.clone()), parameters))
+                Ok((Surface::Nurbs(base.restored(&scaled.surface)), parameters))
             }
             _ => surface_image(self.model, face, &mover),
         };

@@ -1,10 +1,13 @@
 //! Faces that bear held loops: planes, on which a loop moves freely, and surfaces that have to be stretched, as exact
 //! B-splines with the loops in their parameters.
+//!
+//! A surface that closes on itself is cut open where no loop is in the way, stretched, and closed again where it was.
 
 use super::carrier::{Carrier, carrier};
 use super::held::Held;
-use super::layout::{Layouts, lay_out_on};
+use super::layout::{Layouts, LoopShape, lay_out_on};
 use super::scope::face_name;
+use super::winding::{Round, outline};
 use crate::brep::FaceId;
 use crate::geometry::nurbs::NurbsSurface;
 use crate::geometry::{Carried, Surface};
@@ -12,6 +15,7 @@ use crate::math::Frame;
 use crate::model::Model;
 use crate::ops::OperationError;
 use crate::ops::constrained_scale::task::Contour;
+use crate::ops::net::KnotRows;
 use crate::ops::net::acting::closed_directions;
 
 /// A face with held loops.
@@ -28,12 +32,27 @@ pub(super) enum Base {
 pub(super) struct NetBase {
     /// Its exact B-spline.
     pub carrier: Carrier,
-    /// Held loops: number among all, polygon in the parameters of the carrier.
+    /// What is stretched: the B-spline, or that cut open elsewhere.
+    pub surface: NurbsSurface,
+    /// Seams that were moved, in the order in which they were.
+    moved: Vec<MovedSeam>,
+    /// Held loops: number among all, polygon in the parameters of what is stretched.
     pub held: Vec<(usize, Contour)>,
     /// The outer loop, where it is not the natural border.
     pub outer: Option<Contour>,
     /// Inner loops that follow the scaling.
     pub scaled: Vec<Contour>,
+}
+
+/// A closed surface that was cut open elsewhere.
+#[derive(Debug, Clone, Copy)]
+struct MovedSeam {
+    /// 0 for `u`, 1 for `v`.
+    direction: usize,
+    /// Its old domain.
+    domain: (f64, f64),
+    /// Where the old seam is now.
+    seam: f64,
 }
 
 impl Base {
@@ -44,6 +63,26 @@ impl Base {
             Self::Net(base) => Some(base),
         }
     }
+}
+
+impl NetBase {
+    /// A stretched surface with its seams where those of the carrier are.
+    pub fn restored(&self, stretched: &NurbsSurface) -> NurbsSurface {
+        let mut surface = stretched.clone();
+        for moved in self.moved.iter().rev() {
+            let along = upright(&surface, moved.direction);
+            // Refinement keeps the knot of the old seam; a smooth one may have gone, and is cut anew.
+            let opened = along.opened_u(moved.seam, moved.domain);
+            let (opened, _) = opened.expect("a surface that was cut open can be cut open again");
+            surface = upright(&opened, moved.direction);
+        }
+        surface
+    }
+}
+
+/// A surface with a direction as its first.
+fn upright(surface: &NurbsSurface, direction: usize) -> NurbsSurface {
+    if direction == 0 { surface.clone() } else { surface.swapped() }
 }
 
 /// Lays out all faces with held loops.
@@ -68,28 +107,99 @@ fn net_base(
     held: &Held,
     layouts: &mut Layouts,
 ) -> Result<NetBase, OperationError> {
-    let fault = |reason: &str| {
-        let reason = reason.to_owned();
-        OperationError::NoParameterLoops { face: face_name(model, face), reason }
-    };
     let carrier = carrier(model, face, layouts.of(model, face)?)?;
     let layout = lay_out_on(model, face, &carrier.surface)?;
-    let mut base = NetBase { carrier, held: Vec::new(), outer: None, scaled: Vec::new() };
+    let clamped = carrier.surface.clamped();
+    let surface = clamped.mended(MEETS * clamped.bounding_box().diagonal());
+    let mut base =
+        NetBase { carrier, surface, moved: Vec::new(), held: Vec::new(), outer: None, scaled: Vec::new() };
+    let (mut rest, mut inner) = (Vec::new(), Vec::new());
     for (at, shape) in layout.loops.iter().enumerate() {
         let Some(shape) = shape else { continue };
-        let contour = homed(base.carrier.contour(&shape.contour), &base.carrier.surface);
-        if let Some(number) = held.loops_of(face).find(|&k| held.loops[k].at == at) {
-            base.held.push((number, contour));
-        } else if layout.is_inner(at) {
-            base.scaled.push(contour);
-        } else if !on_border(&base.carrier.surface, &contour) {
-            if !shape.closed {
-                return Err(fault("a loop winds round the closed surface away from its border"));
-            }
-            base.outer = Some(contour);
+        let contour = base.carrier.contour(&shape.contour);
+        let number = held.loops_of(face).find(|&k| held.loops[k].at == at);
+        if number.is_some() || layout.is_inner(at) {
+            inner.push((number, contour));
+        } else {
+            rest.push(LoopShape { contour, closed: shape.closed });
         }
     }
+    for direction in 0..2 {
+        cut_open(&mut base, direction, &inner, &rest);
+    }
+    for (number, contour) in inner {
+        let contour = homed(contour, &base.surface);
+        match number {
+            Some(number) => base.held.push((number, contour)),
+            None => base.scaled.push(contour),
+        }
+    }
+    for shape in rest.iter_mut().filter(|shape| shape.closed) {
+        shape.contour = homed(std::mem::take(&mut shape.contour), &base.surface);
+    }
+    let round = Round { surface: &base.surface, same_sense: model.brep.faces[face].same_sense };
+    base.outer = outline(&round, rest).map_err(|reason| {
+        let (face, reason) = (face_name(model, face), reason.to_owned());
+        OperationError::NoParameterLoops { face, reason }
+    })?;
     Ok(base)
+}
+
+/// Part of the surface's size within which the two sides of a knot that occurs too often meet.
+const MEETS: f64 = 1e-9;
+/// Part of the widest way round between inner loops that must be left between them and the seam, or the seam moves.
+const SEAM_ROOM: f64 = 0.25;
+/// Part of the surface's size by which control points may move when the knot of a smooth seam is removed.
+const SMOOTH: f64 = 1e-10;
+
+/// Cuts a closed surface open in the middle of the widest way between loops when its seam is in the way of one. A face
+/// that fills the surface between edges along its seam is left as it is.
+fn cut_open(base: &mut NetBase, direction: usize, inner: &[(Option<usize>, Contour)], rest: &[LoopShape]) {
+    let Some(period) = closed_directions(&base.surface)[direction] else { return };
+    let (u, v) = base.surface.domain();
+    let domain = [u, v][direction];
+    let closed = rest.iter().filter(|shape| shape.closed).map(|shape| &shape.contour);
+    let mut spans: Vec<(f64, f64)> =
+        inner.iter().map(|(_, c)| c).chain(closed).map(|c| extent(c, direction)).collect();
+    for span in &mut spans {
+        let turns = ((span.0 - domain.0) / period).floor() * period;
+        *span = (span.0 - turns, span.1 - turns);
+    }
+    spans.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((low, high)) = widest(&spans, period) else { return };
+    let room = spans.iter().map(|s| (s.0 - domain.0).min(domain.1 - s.1)).fold(f64::INFINITY, f64::min);
+    if room >= SEAM_ROOM * (high - low) {
+        return;
+    }
+    let middle = 0.5 * (low + high);
+    let cut = domain.0 + (middle - domain.0).rem_euclid(period);
+    let along = upright(&base.surface, direction);
+    let Some((opened, seam)) = along.opened_u(cut, (cut, cut + period)) else { return };
+    let mut rows = KnotRows::new(&opened);
+    rows.smooth(seam, SMOOTH * opened.bounding_box().diagonal());
+    let opened = rows.surface().unwrap_or(opened);
+    base.surface = upright(&opened, direction);
+    base.moved.push(MovedSeam { direction, domain, seam });
+}
+
+fn extent(contour: &Contour, direction: usize) -> (f64, f64) {
+    let values = || contour.points.iter().map(|p| p[direction]);
+    (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max))
+}
+
+/// The widest gap between spans on a circle; spans ascend by their starts.
+fn widest(spans: &[(f64, f64)], period: f64) -> Option<(f64, f64)> {
+    let (first, _) = spans.first()?;
+    let mut reached = f64::NEG_INFINITY;
+    let mut gaps = Vec::new();
+    for span in spans {
+        if reached.is_finite() {
+            gaps.push((reached, span.0));
+        }
+        reached = reached.max(span.1);
+    }
+    gaps.push((reached, first + period));
+    gaps.into_iter().filter(|gap| gap.1 > gap.0).max_by(|a, b| (a.1 - a.0).total_cmp(&(b.1 - b.0)))
 }
 
 /// A polygon moved by whole periods of a closed surface to where its middle lies in the domain.
@@ -97,24 +207,10 @@ fn homed(mut contour: Contour, surface: &NurbsSurface) -> Contour {
     let (u, v) = surface.domain();
     for (k, (domain, period)) in [u, v].into_iter().zip(closed_directions(surface)).enumerate() {
         let Some(period) = period else { continue };
-        let low = contour.points.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);
-        let high = contour.points.iter().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max);
+        let (low, high) = extent(&contour, k);
         // The middle of a loop that fills the period is that of the domain, but for rounding.
         let turns = ((0.5 * (domain.0 + domain.1) - 0.5 * (low + high)) / period).round();
         contour.points.iter_mut().for_each(|p| p[k] += turns * period);
     }
     contour
-}
-
-/// Distance from a side of the domain, as a part of its range, within which a loop runs on the natural border.
-const ON_BORDER: f64 = 1e-7;
-
-/// Whether every point of a loop lies on the natural border of a surface.
-fn on_border(surface: &NurbsSurface, contour: &Contour) -> bool {
-    let (u, v) = surface.domain();
-    let near = |x: f64, (start, end): (f64, f64)| {
-        let room = ON_BORDER * (end - start);
-        (x - start).abs() <= room || (x - end).abs() <= room
-    };
-    contour.points.iter().all(|p| near(p[0], u) || near(p[1], v))
 }

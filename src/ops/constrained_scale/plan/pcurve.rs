@@ -17,7 +17,7 @@ const CROSSING_SAMPLES: usize = 400;
 /// Halvings of an interval around a crossing.
 const CROSSING_STEPS: usize = 60;
 /// Distance in space that an approximation may add, as a part of the surface's size.
-const TOLERANCE: f64 = 1e-11;
+const TOLERANCE: f64 = 1e-10;
 /// Part of a range within which two breaks are one.
 const SAME: f64 = 1e-9;
 

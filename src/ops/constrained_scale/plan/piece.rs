@@ -186,7 +186,7 @@ impl Former<'_> {
         let fault = || self.degenerate(number);
         let base = self.held.bases[&held.face].net().ok_or_else(fault)?;
         let (_, contour) = base.held.iter().find(|(k, _)| *k == number).ok_or_else(fault)?;
-        let surface = base.carrier.surface.clamped();
+        let surface = base.surface.clamped();
         let polygon = polygon(&surface, contour).ok_or_else(fault)?;
         LoopFrame::new(&surface, &polygon, Energy::Published)
             .map_err(|at| ScaleError::SingularParametrisation { face: face_name(self.model, held.face), at })

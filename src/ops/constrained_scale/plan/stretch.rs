@@ -115,7 +115,7 @@ fn task<'a>(former: &Former<'a>, face: FaceId) -> FaceTask<'a> {
     });
     FaceTask {
         name: face_name(former.model, face),
-        surface: &base.carrier.surface,
+        surface: &base.surface,
         held: held.collect(),
         outer: base.outer.clone(),
         scaled: base.scaled.clone(),

@@ -194,31 +194,52 @@ pub(super) fn connected(
     loops: &LoopEdges,
     without: &BTreeSet<FaceId>,
 ) -> Vec<RigidPart> {
-    let mut parts: Vec<(BTreeSet<EdgeId>, RigidPart)> = Vec::new();
-    let mut add = |edges: BTreeSet<EdgeId>, face: Option<FaceId>, number: Option<usize>| {
-        let (touching, apart): (Vec<_>, Vec<_>) =
-            parts.drain(..).partition(|(known, _)| !known.is_disjoint(&edges));
-        let mut part = (edges, RigidPart::default());
-        part.1.faces.extend(face);
-        part.1.loops.extend(number);
-        for (edges, other) in touching {
-            part.0.extend(edges);
-            part.1.faces.extend(other.faces);
-            part.1.loops.extend(other.loops);
+    let mut union = Union::default();
+    let mut owner: BTreeMap<EdgeId, usize> = BTreeMap::new();
+    let kept: Vec<FaceId> = faces.difference(without).copied().collect();
+    let of_faces = kept.iter().map(|&face| uses.edges_of(face).collect::<Vec<EdgeId>>());
+    let of_loops = loops.values().map(|edges| edges.iter().copied().collect());
+    for (item, edges) in of_faces.chain(of_loops).enumerate() {
+        union.add();
+        for edge in edges {
+            let first = *owner.entry(edge).or_insert(item);
+            union.join(first, item);
         }
-        part.1.loops.sort_unstable();
-        parts = apart;
-        parts.push(part);
-    };
-    for &face in faces.difference(without) {
-        add(uses.edges_of(face).collect(), Some(face), None);
     }
-    for (&number, edges) in loops {
-        add(edges.clone(), None, Some(number));
+    let mut parts: BTreeMap<usize, RigidPart> = BTreeMap::new();
+    for (item, &face) in kept.iter().enumerate() {
+        parts.entry(union.root(item)).or_default().faces.insert(face);
     }
-    let mut parts: Vec<RigidPart> = parts.into_iter().map(|(_, part)| part).collect();
+    for (item, &number) in loops.keys().enumerate() {
+        parts.entry(union.root(kept.len() + item)).or_default().loops.push(number);
+    }
+    let mut parts: Vec<RigidPart> = parts.into_values().collect();
     parts.sort_by(|a, b| a.loops.cmp(&b.loops).then_with(|| a.faces.cmp(&b.faces)));
     parts
+}
+
+/// Items in sets that can be joined.
+#[derive(Debug, Default)]
+struct Union {
+    parent: Vec<usize>,
+}
+
+impl Union {
+    fn add(&mut self) {
+        self.parent.push(self.parent.len());
+    }
+
+    fn root(&self, mut item: usize) -> usize {
+        while self.parent[item] != item {
+            item = self.parent[item];
+        }
+        item
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.parent[a.max(b)] = a.min(b);
+    }
 }
 
 /// The fewest walls at which a feature can be cut so that all its parts are good, longer walls first among as many;
