@@ -9,8 +9,11 @@ mod bodies {
     include!("../fuzz/bodies/iges_global.rs");
     include!("../fuzz/bodies/iges_parameters.rs");
 
-    /// Each target with its name.
-    pub const ALL: [(&str, fn(&[u8])); 5] = [
+    /// A name and a body that must not panic.
+    pub type Target = (&'static str, fn(&[u8]));
+
+    /// All targets.
+    pub const ALL: [Target; 5] = [
         ("p21_tile", p21_tile),
         ("p21_edit_locality", p21_edit_locality),
         ("iges_cards", iges_cards),

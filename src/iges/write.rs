@@ -1,7 +1,7 @@
 //! The text of new records, and of whole files.
 //!
 //! [`RecordWriter`] gathers the parameters of one entity; [`laid_out`] sets them on lines. Neither knows a schema: which
-//! parameter comes when is the caller's business. [`file`] puts entities together to a file of the fixed form.
+//! parameter comes when is the caller's business. [`file()`] puts entities together to a file of the fixed form.
 
 use super::card::{DATA, PARAMETER_DATA};
 use super::directory_entry::{DirectoryEntry, EntryNumber};
