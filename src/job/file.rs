@@ -31,9 +31,12 @@ pub struct Job {
     pub inputs: Vec<String>,
     /// Where each result goes, relative to the job file; `{dir}`, `{stem}` and `{ext}` are those of the input.
     pub output: String,
-    /// Side files beside the output: meshes for viewing and for OpenSCAD.
+    /// Side files beside the output: meshes for viewing and for OpenSCAD, and a sheet that proves what was held.
     #[serde(default)]
-    pub also: Vec<SideFormat>,
+    pub also: Vec<SideFile>,
+    /// Pictures beside the output, as PNG, of the faces that the operations changed.
+    #[serde(default)]
+    pub pictures: Vec<PictureKind>,
     /// Bounds on whatever must be approximated.
     #[serde(default)]
     pub tolerance: ToleranceSettings,
@@ -67,10 +70,10 @@ impl TryFrom<u64> for Version {
     }
 }
 
-/// A mesh format that a side file may have.
+/// A file beside the output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
-pub enum SideFormat {
+pub enum SideFile {
     /// Binary STL.
     Stl,
     /// OFF with shared vertices.
@@ -80,10 +83,12 @@ pub enum SideFormat {
     ThreeMf,
     /// Binary glTF with names and colours.
     Glb,
+    /// A sheet of what was held, which `resurf verify` checks.
+    Proof,
 }
 
-impl SideFormat {
-    /// The extension of its files.
+impl SideFile {
+    /// What stands behind the stem of its name.
     #[must_use]
     pub fn extension(self) -> &'static str {
         match self {
@@ -91,6 +96,56 @@ impl SideFormat {
             Self::Off => "off",
             Self::ThreeMf => "3mf",
             Self::Glb => "glb",
+            Self::Proof => "proof.json",
+        }
+    }
+
+    /// The format of a mesh; `None` for what is none.
+    #[must_use]
+    pub fn mesh(self) -> Option<SideFormat> {
+        match self {
+            Self::Stl => Some(SideFormat::Stl),
+            Self::Off => Some(SideFormat::Off),
+            Self::ThreeMf => Some(SideFormat::ThreeMf),
+            Self::Glb => Some(SideFormat::Glb),
+            Self::Proof => None,
+        }
+    }
+}
+
+/// A format of meshes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SideFormat {
+    /// Binary STL.
+    Stl,
+    /// OFF with shared vertices.
+    Off,
+    /// 3MF with names and colours.
+    ThreeMf,
+    /// Binary glTF with names and colours.
+    Glb,
+}
+
+/// What a picture shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize, serde::Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum PictureKind {
+    /// Highlight lines before and after.
+    Highlight,
+    /// Mean curvature before and after: red where the face bulges outwards.
+    Curvature,
+    /// Deviation of the new faces from the old: red outwards.
+    Deviation,
+}
+
+impl PictureKind {
+    /// The word of the job file, and of the file's name.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Highlight => "highlight",
+            Self::Curvature => "curvature",
+            Self::Deviation => "deviation",
         }
     }
 }

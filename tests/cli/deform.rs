@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use crate::Fixture;
 use crate::paste::model;
-use crate::paste_corpus::held;
+use crate::paste_golden::nothing_else_changed;
 use crate::support::corpus;
 
 fn job(part: &str, operation: &str) -> String {
@@ -23,6 +23,17 @@ fn door(operation: &str) -> Fixture {
     let part = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/door/door.step");
     let fixture = Fixture::new().file("part.stp", std::fs::read(part).expect("a sample"));
     fixture.sample("crease/lines.step").file("job.toml", job("part.stp", operation))
+}
+
+/// Nothing but the face has changed, and FreeCAD finds the part valid.
+fn held(fixture: &Fixture, before: &Model, face: FaceId) {
+    nothing_else_changed(before, &model(fixture, "out/part.stp"), face);
+    let report = std::fs::read_to_string(fixture.path("report.json")).expect("a report");
+    let report: Value = serde_json::from_str(&report).expect("JSON");
+    for verdict in report["parts"][0]["validators"].as_array().into_iter().flatten() {
+        assert_eq!(verdict["accepted"], true, "{verdict}");
+        assert_eq!(verdict["figures"]["faces"], before.brep.faces.len(), "{verdict}");
+    }
 }
 
 fn face_named(model: &Model, name: &str) -> FaceId {

@@ -5,7 +5,9 @@ use crate::scan::{Contacts, Kind, Part, cloud};
 use resurf::geometry::nurbs::{NurbsSurface, Wrap};
 use resurf::math::Point3;
 use resurf::ops::feature_reconstruction::guide::guides;
-use resurf::ops::feature_reconstruction::limiting_line::{LimitingLine, LineSettings, Objective, limiting_line};
+use resurf::ops::feature_reconstruction::limiting_line::{
+    LimitingLine, LineSettings, Objective, limiting_line,
+};
 use resurf::ops::feature_reconstruction::metric::Metric;
 use resurf::ops::feature_reconstruction::{Closure, Projector};
 
@@ -103,7 +105,10 @@ fn limiting_lines_follow_those_of_the_formulas() {
             let (mean, greatest) = errors(&points, &truth.limiting, part.closed);
             println!(
                 "  mean {mean:.4} greatest {greatest:.4}; deviation {:.4} slices {:?} gap {:.3} knots {}",
-                line.deviation, line.slices, line.gap, line.curve.points().len()
+                line.deviation,
+                line.slices,
+                line.gap,
+                line.curve.points().len()
             );
         }
     }

@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "builders of fixtures stop at what cannot be built")]
 
+mod blends;
 mod cloud_files;
 mod lines;
 mod parts;

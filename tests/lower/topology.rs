@@ -9,7 +9,7 @@ use resurf::brep::{BodyId, Brep, EdgeId, FaceId, LoopId};
 use resurf::geometry::{Curve, Curve2d, Surface};
 use resurf::math::{Frame, Point2, Point3, Vector2, Vector3};
 use resurf::model::change_set::{
-    EdgeCurve, EdgeRef, NewSurface, NewBound, NewCoedge, NewEdge, NewEdgeId, NewFace, NewVertexId, VertexRef,
+    EdgeCurve, EdgeRef, NewBound, NewCoedge, NewEdge, NewEdgeId, NewFace, NewSurface, NewVertexId, VertexRef,
 };
 use resurf::model::{Balance, ChangeSet, Model};
 use resurf::step::lower::{LowerError, lower};

@@ -11,13 +11,13 @@ const POLE: f64 = -0.267_949_192_431_122_7;
 /// Powers of the pole that count: the next one is below rounding.
 const POWERS: usize = 28;
 /// Least count of values: with fewer there is no cubic.
-pub const LEAST: usize = 4;
+const LEAST: usize = 4;
 
 /// The periodic cubic with the i-th of `n` rows at the parameter `i / n`: clamped knots with `n` even spans over [0, 1],
 /// and its `n + 3` control rows, of which the first is the last. Two times continuously differentiable at its ends, too.
 ///
 /// # Panics
-/// For fewer than [`LEAST`] rows, or a length that is no multiple of the width.
+/// For fewer than four rows, or a length that is no multiple of the width.
 #[must_use]
 pub fn periodic_cubic(rows: &[f64], width: usize) -> (KnotVector, Vec<f64>) {
     let n = rows.len() / width;
@@ -31,8 +31,10 @@ pub fn periodic_cubic(rows: &[f64], width: usize) -> (KnotVector, Vec<f64>) {
     }
     let knots = (0..n + 7).map(|j| (j as f64 - 3.0) / n as f64).collect();
     let knots = KnotVector::new(3, knots).expect("even knots ascend");
-    let turned: Vec<f64> =
-        (0..n + 3).flat_map(|j| (0..width).map(move |c| ((j + n - 1) % n) * width + c)).map(|k| coefficients[k]).collect();
+    let turned: Vec<f64> = (0..n + 3)
+        .flat_map(|j| (0..width).map(move |c| ((j + n - 1) % n) * width + c))
+        .map(|k| coefficients[k])
+        .collect();
     let (knots, mut out) = clamp_rows(&knots, &turned, width);
     let (first, rest) = out.split_at_mut(width);
     let at = rest.len() - width;
@@ -124,7 +126,9 @@ mod tests {
                 .flat_map(|i| [(TAU * i as f64 / n as f64).cos(), (TAU * i as f64 / n as f64).sin()])
                 .collect();
             let curve = curve(periodic_cubic(&rows, 2));
-            (0..10 * n).map(|k| (curve.point_at(k as f64 / (10 * n) as f64).coords.norm() - 1.0).abs()).fold(0.0, f64::max)
+            (0..10 * n)
+                .map(|k| (curve.point_at(k as f64 / (10 * n) as f64).coords.norm() - 1.0).abs())
+                .fold(0.0, f64::max)
         };
         // The cubic's error against x⁗ h⁴ / 384 (de Boor).
         assert!((error(40) / (TAU / 40.0).powi(4) * 384.0 - 1.0).abs() < 0.05);

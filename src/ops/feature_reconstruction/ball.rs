@@ -115,12 +115,9 @@ pub fn rest(
     settled(surfaces, distance, station, at)
 }
 
-fn offsets(
-    surfaces: [&NurbsSurface; 2],
-    distance: f64,
-    at: [[f64; 2]; 2],
-) -> Result<[Offset; 2], Unrest> {
-    let of = |k: usize| Offset::of(&surfaces[k].derivatives(at[k][0], at[k][1]), distance).ok_or(Unrest::NotFound);
+fn offsets(surfaces: [&NurbsSurface; 2], distance: f64, at: [[f64; 2]; 2]) -> Result<[Offset; 2], Unrest> {
+    let of =
+        |k: usize| Offset::of(&surfaces[k].derivatives(at[k][0], at[k][1]), distance).ok_or(Unrest::NotFound);
     Ok([of(0)?, of(1)?])
 }
 

@@ -29,7 +29,7 @@ pub struct TooWide(pub usize);
 pub fn middle(section: &Section) -> Option<[f64; 4]> {
     let arms: [Vector3<f64>; 2] = section.contacts.map(|c| c.point - section.centre);
     let cosine = arms[0].dot(&arms[1]) / (arms[0].norm() * arms[1].norm());
-    if !(cosine > WIDEST) {
+    if cosine.is_nan() || cosine <= WIDEST {
         return None;
     }
     let weight = (0.5 * (1.0 + cosine)).sqrt();

@@ -5,10 +5,10 @@
 
 use std::f64::consts::TAU;
 
+use super::Closure;
 use super::error::ReconstructionError;
 use super::feet::Foot;
 use super::metric::{Metric, ParameterLine};
-use super::Closure;
 use crate::geometry::nurbs::KnotVector;
 use crate::math::sparse::SymmetricFactor;
 use crate::math::{Matrix2, Point2, TriMat, Vector2};
@@ -147,7 +147,8 @@ fn round(axes: &Axes, polar: &[Polar]) -> ParameterLine {
     };
     let data: Vec<(f64, f64)> = polar.iter().map(|&(turn, r, _)| (turn, r)).collect();
     let value = fitted(&row, &data, (SPANS, Closure::Closed));
-    let points = (0..DENSE).map(|k| k as f64 / DENSE as f64).map(|turn| axes.point(turn, value(turn))).collect();
+    let points =
+        (0..DENSE).map(|k| k as f64 / DENSE as f64).map(|turn| axes.point(turn, value(turn))).collect();
     ParameterLine { points, closure: Closure::Closed }
 }
 
@@ -163,8 +164,11 @@ fn along(axes: &Axes, polar: &[Polar], gap: (f64, f64)) -> ParameterLine {
 fn across(points: &[[f64; 2]]) -> ParameterLine {
     let n = points.len().max(1) as f64;
     let centre = points.iter().fold(Point2::origin(), |sum, p| sum + Vector2::from(*p) / n);
-    let spread: Matrix2<f64> =
-        points.iter().map(|p| Point2::from(*p) - centre).map(|d| d * d.transpose()).fold(Matrix2::zeros(), |s, m| s + m);
+    let spread: Matrix2<f64> = points
+        .iter()
+        .map(|p| Point2::from(*p) - centre)
+        .map(|d| d * d.transpose())
+        .fold(Matrix2::zeros(), |s, m| s + m);
     let parts = spread.symmetric_eigen();
     let long: Vector2<f64> = parts.eigenvectors.column(parts.eigenvalues.imax()).into_owned();
     let side = Vector2::new(-long.y, long.x);
@@ -188,8 +192,9 @@ fn open_fitted(data: &[(f64, f64)]) -> ((f64, f64), impl Fn(f64) -> f64) {
     let taken: Vec<(f64, f64)> =
         data.iter().filter(|(x, _)| (range.0 + cut..=range.1 - cut).contains(x)).copied().collect();
     // A band in one place has no length; the knots need one.
-    let knots = KnotVector::clamped_uniform(3, SPANS, range.0, range.1.max(range.0 + f64::MIN_POSITIVE.sqrt()))
-        .expect("a range of positive length");
+    let knots =
+        KnotVector::clamped_uniform(3, SPANS, range.0, range.1.max(range.0 + f64::MIN_POSITIVE.sqrt()))
+            .expect("a range of positive length");
     let n = knots.n_basis();
     let row = move |x: f64| {
         let basis = knots.basis_derivatives(x, 0);
@@ -237,10 +242,10 @@ fn check_star(lines: &[ParameterLine], band: &[[f64; 2]], spacing: f64) -> Resul
     let length = |line: &ParameterLine| -> f64 {
         line.points.windows(2).map(|pair| (plane(&pair[1]) - plane(&pair[0])).norm()).sum()
     };
-    let coarse: Vec<Point2<f64>> = lines.iter().flat_map(|line| line.points.iter().step_by(8)).map(plane).collect();
-    let square = |p: &[f64; 2]| {
-        coarse.iter().map(|q| (q - plane(p)).norm_squared()).fold(f64::INFINITY, f64::min)
-    };
+    let coarse: Vec<Point2<f64>> =
+        lines.iter().flat_map(|line| line.points.iter().step_by(8)).map(plane).collect();
+    let square =
+        |p: &[f64; 2]| coarse.iter().map(|q| (q - plane(p)).norm_squared()).fold(f64::INFINITY, f64::min);
     let width = band.len() as f64 * spacing * spacing / lines.iter().map(length).sum::<f64>();
     let scatter = (band.iter().map(square).sum::<f64>() / band.len() as f64).sqrt();
     if scatter > STAR * width + spacing {

@@ -131,7 +131,8 @@ pub fn limiting_line(
     settings: &LineSettings,
 ) -> Result<LimitingLine, ReconstructionError> {
     let spacing = objective.spacing;
-    let wavelength = settings.wavelength.unwrap_or((WAVELENGTH[0] * settings.band).max(WAVELENGTH[1] * spacing));
+    let wavelength =
+        settings.wavelength.unwrap_or((WAVELENGTH[0] * settings.band).max(WAVELENGTH[1] * spacing));
     let mut pass = Pass::new(primary, objective, guide, &|_| WINDOW[0] * settings.band, DEGREE)?;
     for (number, floor) in FLOORS.into_iter().enumerate() {
         let guide = match guide.closure {
@@ -260,7 +261,8 @@ impl Pass {
         floor: f64,
     ) -> Result<ParameterLine, ReconstructionError> {
         let (values, weights) = self.offsets();
-        let raw: Vec<[f64; 2]> = self.placed(primary, &values).into_iter().map(|at| metric.lengths(at)).collect();
+        let raw: Vec<[f64; 2]> =
+            self.placed(primary, &values).into_iter().map(|at| metric.lengths(at)).collect();
         let order = (Order::Third, Order::Third.stiffness(wavelength, self.step));
         let smooth = smoothed_against_outliers(&raw, order, &weights, floor * self.spacing, self.closure)?;
         let points = smooth.into_iter().map(|x| metric.parameters(x)).collect();

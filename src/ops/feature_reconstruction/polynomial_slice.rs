@@ -137,9 +137,7 @@ fn solved<const N: usize>(points: &[SlabPoint]) -> Option<[f64; 4]> {
         found = Some((solution, deviation));
     }
     let (solution, deviation) = found?;
-    let value = |z: f64| -> f64 {
-        row::<N>(z, 0.0).iter().zip(&solution.values).map(|(a, x)| a * x).sum()
-    };
+    let value = |z: f64| -> f64 { row::<N>(z, 0.0).iter().zip(&solution.values).map(|(a, x)| a * x).sum() };
     let zero = zero(&value)?;
     let step = 1e-4;
     let slope = (value(zero + step) - value(zero - step)) / (2.0 * step);

@@ -163,7 +163,11 @@ struct Arc {
 ///
 /// # Errors
 /// [`ReconstructionError::RadiusFailed`] for too few slices, and those of the ball.
-pub fn radius(cloud: &BlendCloud, roller: &Roller<'_>, wanted: Wanted) -> Result<Radius, ReconstructionError> {
+pub fn radius(
+    cloud: &BlendCloud,
+    roller: &Roller<'_>,
+    wanted: Wanted,
+) -> Result<Radius, ReconstructionError> {
     let closure = roller.closure();
     let first = arcs(cloud, roller.stations(), closure);
     let failed = |found: usize| ReconstructionError::RadiusFailed { found, least: LEAST.1 };
@@ -207,7 +211,8 @@ fn on_primary(
     let (edge, closure) = (roller.edge(), roller.closure());
     let knots = (cloud.points().len() / KNOTS.0).clamp(KNOTS.1, KNOTS.2);
     let sections = Roller::new(*edge, knots)?.roll(&RadiusLaw::Constant { radius: start })?;
-    let fit = |slope| fitted(cloud.points(), edge.surfaces[0], (&sections, closure), (edge.side, start, slope));
+    let fit =
+        |slope| fitted(cloud.points(), edge.surfaces[0], (&sections, closure), (edge.side, start, slope));
     let constant = fit(Slope::None);
     if wanted == Wanted::Constant || closure == Closure::Closed {
         return Ok(constant);
@@ -238,9 +243,16 @@ fn arcs(cloud: &BlendCloud, stations: &[Station], closure: Closure) -> Vec<Arc> 
         if points.len() < LEAST.0 {
             continue;
         }
-        let Some(circle) = PlaneCircle::pratt(&points).map(|circle| circle.refined(&points)) else { continue };
+        let Some(circle) = PlaneCircle::pratt(&points).map(|circle| circle.refined(&points)) else {
+            continue;
+        };
         if circle.radius.is_finite() && circle.radius > 0.0 {
-            found.push(Arc { at, radius: circle.radius, angle: extent(&circle, &points), count: points.len() });
+            found.push(Arc {
+                at,
+                radius: circle.radius,
+                angle: extent(&circle, &points),
+                count: points.len(),
+            });
         }
     }
     found
@@ -336,8 +348,12 @@ impl ByBall {
 
 /// A step, the standard error and the scatter. Points that no centre is nearest to have no number and do not count.
 fn step(off: &[f64], slopes: &[f64]) -> (f64, f64, f64) {
-    let counted: Vec<(f64, f64)> =
-        off.iter().zip(slopes).filter(|(a, b)| a.is_finite() && b.is_finite()).map(|(a, b)| (*a, *b)).collect();
+    let counted: Vec<(f64, f64)> = off
+        .iter()
+        .zip(slopes)
+        .filter(|(a, b)| a.is_finite() && b.is_finite())
+        .map(|(a, b)| (*a, *b))
+        .collect();
     let middle = median(counted.iter().map(|(off, _)| *off).collect());
     let spread = median(counted.iter().map(|(off, _)| (off - middle).abs()).collect());
     let deviation = MEDIAN_TO_DEVIATION * spread + 1e-12;

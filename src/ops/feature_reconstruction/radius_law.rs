@@ -65,9 +65,9 @@ impl LinearLaw {
             let scaled = |k: usize| off(law, &values[k]).abs() * weights[k].sqrt();
             let deviation = MEDIAN_TO_DEVIATION * median((0..n).map(scaled).collect());
             let deviation = deviation.max(1e-9 * law[0].abs().max(1e-9));
-            for k in 0..n {
+            for (k, weight) in tukey.iter_mut().enumerate() {
                 let t = (scaled(k) / (BIWEIGHT * deviation)).min(1.0);
-                tukey[k] = (1.0 - t * t).powi(2);
+                *weight = (1.0 - t * t).powi(2);
             }
             let (mut normal, mut right) = (Matrix2::zeros(), Vector2::zeros());
             for (k, (s, value, _)) in values.iter().enumerate() {
@@ -86,7 +86,8 @@ impl LinearLaw {
         let kept = tukey.iter().filter(|t| **t > 0.0).count();
         let sums = (0..n).map(|k| (weights[k] * tukey[k], off(law, &values[k]).powi(2)));
         let (weight, square) = sums.fold((0.0, 0.0), |(w, s), (a, b)| (w + a, s + a * b));
-        let variance = square / weight.max(f64::MIN_POSITIVE) * kept as f64 / kept.saturating_sub(2).max(1) as f64;
+        let variance =
+            square / weight.max(f64::MIN_POSITIVE) * kept as f64 / kept.saturating_sub(2).max(1) as f64;
         let spread = variance * median(weights);
         let error = |k: usize| (inverse[(k, k)] * spread).max(0.0).sqrt();
         let found = Self { mean: law[0], slope: law[1], middle, errors: [error(0), error(1)], kept };

@@ -104,7 +104,11 @@ fn knot(primary: &NurbsSurface, section: &Section) -> Option<Knot> {
     let (e, f, g) = (du.norm_squared(), du.dot(&dv), dv.norm_squared());
     let determinant = e * g - f * f;
     let (a, b) = (way.dot(&du), way.dot(&dv));
-    Some(Knot { at: [u, v], across: [(g * a - f * b) / determinant, (e * b - f * a) / determinant], way: 0.0 })
+    Some(Knot {
+        at: [u, v],
+        across: [(g * a - f * b) / determinant, (e * b - f * a) / determinant],
+        way: 0.0,
+    })
 }
 
 /// The equations of one round.
@@ -126,9 +130,8 @@ impl System {
         let steps = if closure == Closure::Closed { n } else { n - 1 };
         let law = RadiusLaw::Linear { ends: [values[0] - 0.5 * values[1], values[0] + 0.5 * values[1]] };
         let share = |k: usize| k as f64 / steps as f64;
-        let centres: Vec<[Vector3<f64>; 3]> = (0..n)
-            .map(|k| knots[k].centre(primary, side * law.at(share(k)), side))
-            .collect::<Option<_>>()?;
+        let centres: Vec<[Vector3<f64>; 3]> =
+            (0..n).map(|k| knots[k].centre(primary, side * law.at(share(k)), side)).collect::<Option<_>>()?;
         let way = centre_curve(&centres.iter().map(|c| Point3::from(c[0])).collect::<Vec<_>>(), closure);
         let near = Neighbours::new(&centres.iter().map(|c| Point3::from(c[0])).collect::<Vec<_>>());
         let mut rows = Vec::with_capacity(points.len());

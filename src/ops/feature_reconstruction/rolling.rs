@@ -46,9 +46,9 @@ impl<'a> Roller<'a> {
             let [at, slope, _] = edge.line.derivatives(share);
             let (point, du, dv) = edge.surfaces[0].first_derivatives(at.x, at.y);
             let along = du * slope.x + dv * slope.y;
-            let tangent = along.try_normalize(0.0).ok_or(ReconstructionError::LineSingular {
-                near: point.coords.into(),
-            })?;
+            let tangent = along
+                .try_normalize(0.0)
+                .ok_or(ReconstructionError::LineSingular { near: point.coords.into() })?;
             stations.push(Station { point, tangent });
         }
         Ok(Self { edge, shares, stations })
@@ -82,7 +82,8 @@ impl<'a> Roller<'a> {
             let radius = law.at(share);
             let distance = self.edge.side * radius;
             let fresh = self.start(station, share, radius);
-            let found = fresh.map_or(Err(Unrest::NotFound), |at| rest(self.edge.surfaces, distance, station, at));
+            let found =
+                fresh.map_or(Err(Unrest::NotFound), |at| rest(self.edge.surfaces, distance, station, at));
             // Where the tangent planes mislead, the ball beside knows better.
             let found = found.or_else(|unrest| match sections.last() {
                 Some(last) => rest(self.edge.surfaces, distance, station, last.contacts.map(|c| c.at)),
@@ -102,7 +103,8 @@ impl<'a> Roller<'a> {
     fn start(&self, station: &Station, share: f64, radius: f64) -> Option<[[f64; 2]; 2]> {
         let [primary, secondary] = self.edge.surfaces;
         let at = self.edge.line.point_at(share);
-        let below = secondary.closest_from(&station.point, (at.x, at.y), crate::geometry::nurbs::Wrap::default());
+        let below =
+            secondary.closest_from(&station.point, (at.x, at.y), crate::geometry::nurbs::Wrap::default());
         let normals = [primary.normal(at.x, at.y)?, secondary.normal(below.u, below.v)?];
         let half = 0.5 * normals[0].dot(&normals[1]).clamp(-1.0, 1.0).acos();
         let way = radius * half.tan().clamp(FLAT, 1.0 / FLAT);
@@ -130,7 +132,9 @@ fn reason(unrest: Unrest) -> &'static str {
     match unrest {
         Unrest::NotFound => "it finds no rest between the surfaces",
         Unrest::Outside(0) => "it would touch the primary beyond its end",
-        Unrest::Outside(_) => "it would touch the secondary beyond its end: the radius is greater than the feature",
+        Unrest::Outside(_) => {
+            "it would touch the secondary beyond its end: the radius is greater than the feature"
+        }
         Unrest::TooCurved(0) => "the primary bends more than the ball",
         Unrest::TooCurved(_) => "the secondary bends more than the ball",
     }
@@ -187,7 +191,12 @@ pub fn rolled(edge: Edge<'_>, law: &RadiusLaw, tolerance: f64) -> Result<Rolled,
         }
         if count >= SECTIONS.1 {
             let angle = found.angle.to_degrees();
-            return Err(ReconstructionError::BlendNotFair { sections: count, deviation: off, tolerance, angle });
+            return Err(ReconstructionError::BlendNotFair {
+                sections: count,
+                deviation: off,
+                tolerance,
+                angle,
+            });
         }
         count *= 2;
     }
@@ -198,11 +207,11 @@ fn measured(edge: Edge<'_>, blend: Blend, sections: usize) -> Rolled {
     let places = BETWEEN * sections;
     for k in 0..=places {
         let t = k as f64 / places as f64;
-        for side in 0..2 {
+        for (side, deviation) in deviation.iter_mut().enumerate() {
             let border = blend.surface.derivatives(side as f64, t);
             let at = blend.contacts[side].point_at(t);
             let ground = edge.surfaces[side].derivatives(at.x, at.y);
-            deviation[side] = deviation[side].max((border.point - ground.point).norm());
+            *deviation = deviation.max((border.point - ground.point).norm());
             if let (Some(a), Some(b)) = (border.normal(), ground.normal()) {
                 // The blend's normal looks the other way.
                 angle = angle.max(a.cross(&b).norm().min(1.0).asin());

@@ -81,12 +81,14 @@ fn a_wave_is_kept_by_the_part_that_the_formula_says() {
         assert_near(smoothed(&points, alpha, &weights, Closed).unwrap().as_flattened(), &expected, 1e-10);
         // A floor above all residuals: nothing counts as an outlier.
         let floor = 1e3;
-        let found = smoothed_against_outliers(&points, (Order::Second, alpha), &weights, floor, Closed).unwrap();
+        let found =
+            smoothed_against_outliers(&points, (Order::Second, alpha), &weights, floor, Closed).unwrap();
         assert_near(found.as_flattened(), &expected, 1e-10);
         let alpha = Order::Third.stiffness(wavelength, step);
         let twice = 2.0 - 2.0 * (TAU * waves as f64 / f64::from(n)).cos();
         let expected: Vec<f64> = wave.iter().map(|w| w / (1.0 + alpha * twice.powi(3))).collect();
-        let found = smoothed_against_outliers(&points, (Order::Third, alpha), &weights, floor, Closed).unwrap();
+        let found =
+            smoothed_against_outliers(&points, (Order::Third, alpha), &weights, floor, Closed).unwrap();
         assert_near(found.as_flattened(), &expected, 1e-10);
     }
     let none = smoothed(&[[1.0], [5.0], [2.0]], 0.0, &[1.0; 3], Open).unwrap();
@@ -117,9 +119,8 @@ fn vector_r7_radius() {
     let data = vector("r7_radius.json");
     let read = |name: &str| numbers(&data[name]);
     let (s, radii, deviations) = (read("s"), read("R"), read("design_sd"));
-    let slices: Vec<SliceRadius> = (0..s.len())
-        .map(|k| SliceRadius { at: s[k], radius: radii[k], deviation: deviations[k] })
-        .collect();
+    let slices: Vec<SliceRadius> =
+        (0..s.len()).map(|k| SliceRadius { at: s[k], radius: radii[k], deviation: deviations[k] }).collect();
     let flat = |law: LinearLaw| [law.mean, law.slope, law.middle, law.errors[1]];
     let wanted = |name: &str| ["a", "b", "s_mean", "sd_b"].map(|key| data[name][key].as_f64().unwrap());
     let law = LinearLaw::of_radii(&slices).unwrap();
@@ -151,7 +152,11 @@ fn vector_r5_rolling_ball() {
         let [a, b] = section.contacts;
         let wanted = ["u1", "v1", "u2", "v2"].map(|name| data[name][k].as_f64().unwrap());
         assert_near(&[a.at[0], a.at[1], b.at[0], b.at[1]], &wanted, 1e-9);
-        assert_near(&[section.centre.x, section.centre.y, section.centre.z], &numbers(&data["centre"][k]), 1e-8);
+        assert_near(
+            &[section.centre.x, section.centre.y, section.centre.z],
+            &numbers(&data["centre"][k]),
+            1e-8,
+        );
         let [x, y, z, w] = middle(&section).unwrap();
         assert_near(&[x / w, y / w, z / w], &numbers(&data["mid"][k]), 1e-8);
         assert_near(&[w], &numbers(&data["weight"][k]), 1e-9);
@@ -182,7 +187,8 @@ fn the_blend_of_two_planes_is_a_cylinder() {
         let floor = flat(0.0);
         let turn = |p: Point3<f64>| Point3::new(cosine * p.x - sine * p.z, p.y, sine * p.x + cosine * p.z);
         let wall: Vec<Point3<f64>> = floor.control_points().map(turn).collect();
-        let wall = NurbsSurface::from_points(floor.knots_u().clone(), floor.knots_v().clone(), &wall, None).unwrap();
+        let wall =
+            NurbsSurface::from_points(floor.knots_u().clone(), floor.knots_v().clone(), &wall, None).unwrap();
         let sections: Vec<_> = (0..8)
             .map(|k| {
                 let station = Station { point: Point3::new(0.0, f64::from(k), 0.0), tangent: Vector3::y() };

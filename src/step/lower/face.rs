@@ -9,7 +9,7 @@ use super::edge::{Ground, Owner, PcurveUses, gather};
 use super::list::places;
 use super::{LowerError, Lowering};
 use crate::brep::{Arena, FaceId};
-use crate::model::change_set::{NewSurface, NewEdgeId, NewFace};
+use crate::model::change_set::{NewEdgeId, NewFace, NewSurface};
 use crate::model::{ChangeSet, Model};
 
 /// Keyword of the list of everything styled; not in the tables, because nothing of it is read.

@@ -25,7 +25,9 @@ impl Chart<'_> {
             Self::Same(surface) => {
                 let found = match near {
                     Some(near) => surface.closest_from(point, (near[0], near[1]), Wrap::default()),
-                    None => crate::geometry::nurbs::SurfaceLocator::new(surface, Wrap::default()).closest(point),
+                    None => {
+                        crate::geometry::nurbs::SurfaceLocator::new(surface, Wrap::default()).closest(point)
+                    }
                 };
                 [found.u, found.v]
             }
@@ -64,7 +66,12 @@ impl Chart<'_> {
     /// The cubic through the places of points at even steps of a line. `None` for a closed line that runs round the
     /// surface, or parameters that are not finite.
     #[must_use]
-    pub fn curve(&self, points: &[Point3<f64>], closure: Closure, start: Option<[f64; 2]>) -> Option<NurbsCurve2> {
+    pub fn curve(
+        &self,
+        points: &[Point3<f64>],
+        closure: Closure,
+        start: Option<[f64; 2]>,
+    ) -> Option<NurbsCurve2> {
         let mut places: Vec<[f64; 2]> = Vec::with_capacity(points.len());
         for point in points {
             places.push(self.place(point, places.last().copied().or(start)));

@@ -154,10 +154,14 @@ impl<'a> Sewing<'a> {
             for (j, b) in rails.iter().enumerate().skip(i + 1).filter(|(_, b)| b.shape != a.shape) {
                 let near = outline::meet_boxes(&boxes[i], &boxes[j]);
                 let inside = || {
-                    polygons[j].iter().any(|&p| within(a.rail, p)) || polygons[i].iter().any(|&p| within(b.rail, p))
+                    polygons[j].iter().any(|&p| within(a.rail, p))
+                        || polygons[i].iter().any(|&p| within(b.rail, p))
                 };
                 if near && inside() {
-                    return Err(ReconstructionError::FeaturesOverlap { first: a.shape + 1, second: b.shape + 1 });
+                    return Err(ReconstructionError::FeaturesOverlap {
+                        first: a.shape + 1,
+                        second: b.shape + 1,
+                    });
                 }
             }
         }
@@ -257,7 +261,11 @@ impl<'a> Sewing<'a> {
     /// The wall that stands on a border edge.
     fn wall_of(&self, edge: EdgeId) -> Option<FaceId> {
         let brep = &self.model.brep;
-        brep.coedges.iter().filter(|(_, c)| c.edge == edge).map(|(_, c)| brep.loops[c.in_loop].face).find(|&f| f != self.primary)
+        brep.coedges
+            .iter()
+            .filter(|(_, c)| c.edge == edge)
+            .map(|(_, c)| brep.loops[c.in_loop].face)
+            .find(|&f| f != self.primary)
     }
 
     fn cutter(&self, gap: &Gap) -> Result<Cutter<'a>, ReconstructionError> {
@@ -328,7 +336,8 @@ impl<'a> Sewing<'a> {
         let start = self.end(&cutter, gap.leaves)?;
         let secondary = &self.shapes[self.rails[i].shape].secondary;
         let place = |rail: usize, at: f64| self.rails[rail].rail.on_secondary.point_at(at).into();
-        let section = cutter.of_surface(secondary, [place(i, end.far.0), place(j, start.far.0)], self.tolerance)?;
+        let section =
+            cutter.of_surface(secondary, [place(i, end.far.0), place(j, start.far.0)], self.tolerance)?;
         let ends = [end.far.1, start.far.1].map(VertexRef::New);
         let curve = EdgeCurve::Own(Curve::Nurbs(section.space.clone()));
         let edge = self.changes.new_edges.push(NewEdge { curve, start: ends[0], end: ends[1] });
@@ -347,7 +356,10 @@ impl<'a> Sewing<'a> {
         let rail = self.rails[number].rail;
         let far = cutter.on_curve(&rail.far, meeting.rail_at);
         let far = far.ok_or_else(|| {
-            self.fault(number, "the contact with the secondary does not reach the border: the line is too short there")
+            self.fault(
+                number,
+                "the contact with the secondary does not reach the border: the line is too short there",
+            )
         })?;
         let section = cutter.of_blend(&rail.blend, (meeting.rail_at, far), self.tolerance)?;
         let corner = self.changes.new_vertices.push(rail.far.point_at(far));
@@ -399,7 +411,8 @@ impl<'a> Sewing<'a> {
     /// Once round a blend, counter-clockwise in its parameters.
     fn blend_bound(&self, number: usize) -> Result<Vec<NewCoedge>, ReconstructionError> {
         let progress = &self.rails[number];
-        let Progress { near: Some(near), far: Some(far), ends: [Some(start), Some(end)], .. } = progress else {
+        let Progress { near: Some(near), far: Some(far), ends: [Some(start), Some(end)], .. } = progress
+        else {
             return Err(self.fault(number, "a line of the feature has no edges"));
         };
         let border = |u: f64| {
@@ -434,7 +447,9 @@ impl<'a> Sewing<'a> {
             at = *next;
         }
         if seen.len() != mine.len() {
-            return Err(self.fault(first, "the feature's lines do not make one bound of the secondary surface"));
+            return Err(
+                self.fault(first, "the feature's lines do not make one bound of the secondary surface")
+            );
         }
         Ok(coedges)
     }
@@ -527,7 +542,9 @@ impl<'a> Sewing<'a> {
         let part_of = |at: [f64; 2]| trimmed.polygons.iter().position(|polygon| outline::inside(polygon, at));
         let mut gone = Vec::new();
         for (number, bound) in self.outline.bounds.iter().enumerate() {
-            let Some(first) = bound.points.first().filter(|_| !trimmed.cut.contains(&number)) else { continue };
+            let Some(first) = bound.points.first().filter(|_| !trimmed.cut.contains(&number)) else {
+                continue;
+            };
             let at = [first.u, first.v];
             if self.rails.iter().any(|p| within(p.rail, at)) {
                 gone.push(bound.of);

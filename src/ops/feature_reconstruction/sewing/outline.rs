@@ -100,7 +100,13 @@ impl Outline {
                     for k in 0..sides {
                         let Some([a, b]) = crossing([moved[k], moved[k + 1]], ends) else { continue };
                         let seed = [(k as f64 + a) / sides as f64, b];
-                        found.push(self.refined(brep, rail, (number, side), seed, (&moved[k..k + 2], tolerance))?);
+                        found.push(self.refined(
+                            brep,
+                            rail,
+                            (number, side),
+                            seed,
+                            (&moved[k..k + 2], tolerance),
+                        )?);
                     }
                 }
             }

@@ -38,7 +38,8 @@ impl Rail {
         motion: Option<&Affine>,
         chart: &Chart<'_>,
     ) -> Result<Self, ReconstructionError> {
-        let surface = motion.map_or_else(|| blend.surface.clone(), |motion| blend.surface.transformed(motion));
+        let surface =
+            motion.map_or_else(|| blend.surface.clone(), |motion| blend.surface.transformed(motion));
         let (space, far) = (surface.iso_curve_u(0.0), surface.iso_curve_u(1.0));
         let stays = motion.is_none() && matches!(chart, Chart::Same(_));
         let flat = if stays { Some(blend.contacts[0].clone()) } else { on_face(&space, closure, chart) };
@@ -92,7 +93,10 @@ pub struct Chain {
 
 /// A curve that cannot be cut.
 fn uncut(at: Point3<f64>) -> ReconstructionError {
-    ReconstructionError::Trim { near: at.coords.into(), reason: "two cuts of a contact curve are one".to_owned() }
+    ReconstructionError::Trim {
+        near: at.coords.into(),
+        reason: "two cuts of a contact curve are one".to_owned(),
+    }
 }
 
 impl Chain {
@@ -123,9 +127,9 @@ impl Chain {
         flat: &dyn Fn(f64, f64) -> Option<Curve2d>,
     ) -> Vec<NewCoedge> {
         let n = self.edges.len();
-        let index = |t: f64| (0..=n).min_by(|&a, &b| {
-            (self.breaks[a] - t).abs().total_cmp(&(self.breaks[b] - t).abs())
-        });
+        let index = |t: f64| {
+            (0..=n).min_by(|&a, &b| (self.breaks[a] - t).abs().total_cmp(&(self.breaks[b] - t).abs()))
+        };
         let (first, last) = (index(from).unwrap_or(0), index(to).unwrap_or(n));
         let pieces: Vec<usize> =
             if first < last { (first..last).collect() } else { (first..n).chain(0..last).collect() };

@@ -20,7 +20,8 @@ pub fn clear(
 ) -> Result<(), ReconstructionError> {
     let brep = &model.brep;
     let users = brep.faces_of_edges();
-    let edges = |bound: &LoopId| brep.loops[*bound].coedges.iter().map(|&c| brep.coedges[c].edge).collect::<Vec<_>>();
+    let edges =
+        |bound: &LoopId| brep.loops[*bound].coedges.iter().map(|&c| brep.coedges[c].edge).collect::<Vec<_>>();
     let inside: BTreeSet<_> = bounds.iter().flat_map(edges).collect();
     let outside: BTreeSet<_> =
         brep.faces[primary].loops.iter().filter(|l| !bounds.contains(l)).flat_map(edges).collect();

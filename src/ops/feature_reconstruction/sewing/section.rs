@@ -71,8 +71,7 @@ impl<'a> Cutter<'a> {
                 let near = near.unwrap_or_else(|| surface.parameters_of(point, None).into());
                 let (u, v) = surface.domain();
                 let range = SearchRange { u, v, wrap: surface.wrap() };
-                let found =
-                    foot_point(&|u, v| surface.derivatives(u, v), &range, point, (near[0], near[1]));
+                let found = foot_point(&|u, v| surface.derivatives(u, v), &range, point, (near[0], near[1]));
                 let normal = surface.normal(found.u, found.v).unwrap_or_else(Vector3::zeros);
                 ((point - found.point).dot(&normal), [found.u, found.v])
             }
@@ -85,7 +84,7 @@ impl<'a> Cutter<'a> {
                     let [place, slope] = line(t);
                     let step = (at - place).dot(&slope) / slope.norm_squared();
                     t += step;
-                    if !(step.abs() > 1e-14 * (1.0 + t.abs())) {
+                    if step.is_nan() || step.abs() <= 1e-14 * (1.0 + t.abs()) {
                         break;
                     }
                 }

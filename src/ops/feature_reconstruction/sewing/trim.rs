@@ -72,13 +72,21 @@ impl Pieces {
     }
 
     /// The edge between two neighbouring cuts: before the `k`-th, counted from the edge's start.
-    pub fn piece(&mut self, brep: &Brep, changes: &mut ChangeSet, cuts: &[Cut], edge: EdgeId, k: usize) -> NewEdgeId {
+    pub fn piece(
+        &mut self,
+        brep: &Brep,
+        changes: &mut ChangeSet,
+        cuts: &[Cut],
+        edge: EdgeId,
+        k: usize,
+    ) -> NewEdgeId {
         if let Some(&known) = self.made.get(&(edge, k)) {
             return known;
         }
         let all = self.cuts_of(edge);
         let of = &brep.edges[edge];
-        let start = k.checked_sub(1).map_or(VertexRef::Kept(of.start), |k| VertexRef::New(cuts[all[k]].vertex));
+        let start =
+            k.checked_sub(1).map_or(VertexRef::Kept(of.start), |k| VertexRef::New(cuts[all[k]].vertex));
         let end = all.get(k).map_or(VertexRef::Kept(of.end), |&cut| VertexRef::New(cuts[cut].vertex));
         let made = changes.new_edges.push(NewEdge { curve: EdgeCurve::Of(edge), start, end });
         self.made.insert((edge, k), made);
@@ -107,7 +115,9 @@ impl Step {
     ) -> Option<NewCoedge> {
         let (edge, forward) = match self {
             Self::Whole(edge, forward) => (EdgeRef::Kept(edge), forward),
-            Self::Piece(edge, k, forward) => (EdgeRef::New(pieces.piece(brep, changes, cuts, edge, k)), forward),
+            Self::Piece(edge, k, forward) => {
+                (EdgeRef::New(pieces.piece(brep, changes, cuts, edge, k)), forward)
+            }
             Self::Cut(_) => return None,
         };
         Some(NewCoedge { edge, forward, pcurve: None })
@@ -127,8 +137,10 @@ pub struct Trimmed {
     pub gaps: Vec<Gap>,
 }
 
-/// Cuts the outline and joins what is left along the rails. `rail_uses` gives the uses of a rail's edges from one place
-/// to another, along the rail; `rail_line` their polygon.
+/// For a rail, by its number, and two places on it: the uses of its edges from one to the other, and their polygon.
+pub type RailUses<'a> = dyn Fn(usize, (f64, f64)) -> (Vec<NewCoedge>, Vec<[f64; 2]>) + 'a;
+
+/// Cuts the outline and joins what is left along the rails.
 ///
 /// # Errors
 /// [`ReconstructionError::Trim`] where the cuts do not make bounds.
@@ -137,7 +149,7 @@ pub fn trimmed(
     outline: &Outline,
     cuts: &[Cut],
     (pieces, changes): (&mut Pieces, &mut ChangeSet),
-    rail_uses: &dyn Fn(usize, (f64, f64)) -> (Vec<NewCoedge>, Vec<[f64; 2]>),
+    rail_uses: &RailUses<'_>,
 ) -> Result<Trimmed, ReconstructionError> {
     let mut out = Trimmed::default();
     let mut ways: Vec<(usize, Vec<Step>)> = Vec::new();
@@ -191,13 +203,7 @@ fn lost(cuts: &[Cut], at: usize) -> ReconstructionError {
 }
 
 /// The way round a bound: uses of whole edges and of pieces, and the cuts between them.
-fn steps(
-    brep: &Brep,
-    bound: &Bound,
-    number: usize,
-    cuts: &[Cut],
-    pieces: &Pieces,
-) -> Vec<Step> {
+fn steps(brep: &Brep, bound: &Bound, number: usize, cuts: &[Cut], pieces: &Pieces) -> Vec<Step> {
     let mut way = Vec::new();
     for &(coedge, forward) in &bound.coedges {
         let edge = brep.coedges[coedge].edge;
