@@ -62,7 +62,6 @@ pub fn all() -> Vec<Sample> {
         sample("hood/hood-ap242.step", sheet::write(&Panel::hood(), Schema::Ap242)),
         sample("hood/hood.step", sheet::write(&Panel::hood(), Schema::Ap214)),
         sample("plate/plate.step", plate::write(Schema::Ap214)),
-        scan("scan/border.ply", Kind::Border, 10_000, 0.05),
         sample("scan/border.step", scanned::plate("border", Kind::Border, Schema::Ap242)),
         scan("scan/diaphragm.ply", Kind::Diaphragm, 63_160, 0.0005),
         sample("scan/diaphragm.step", scanned::diaphragm(Schema::Ap214)),

@@ -137,6 +137,7 @@ pub fn parts(job: &Job, folder: &Path) -> Result<Vec<Part>, PlanError> {
         Operation::Deform(_)
         | Operation::DetailTransfer(_)
         | Operation::FeaturePaste(_)
+        | Operation::FeatureReconstruction(_)
         | Operation::Simplify(_) => false,
     };
     if job.also.contains(&SideFile::Proof) && !job.operation.iter().any(holds) {

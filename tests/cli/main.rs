@@ -19,7 +19,10 @@ mod paste_words;
 mod patho;
 mod pictures;
 mod proof;
+mod reconstruct;
 mod regress;
+#[path = "../../samples/generate/scan/mod.rs"]
+mod scan;
 mod solids;
 mod stated;
 #[path = "../support/mod.rs"]
