@@ -322,13 +322,12 @@ fn knots(curve: &Curve2d) -> Option<&crate::geometry::nurbs::KnotVector> {
 
 /// A spline over the knots that the file has for it.
 fn over_knots_of(own: Piece2d, flat: &Piece2d) -> Piece2d {
-    if let (Curve2d::Nurbs(own), Curve2d::Nurbs(flat_curve)) = (&own.curve, &flat.curve) {
-        if own.points().len() == flat_curve.points().len() {
-            let net = own.points().to_vec();
-            if let Ok(curve) = crate::geometry::nurbs::NurbsCurve2::new(flat_curve.knots().clone(), net) {
-                return Piece2d { curve: Curve2d::Nurbs(curve), range: flat.range };
-            }
-        }
+    let (Curve2d::Nurbs(new), Curve2d::Nurbs(old)) = (&own.curve, &flat.curve) else { return own };
+    if new.points().len() != old.points().len() {
+        return own;
     }
-    own
+    match crate::geometry::nurbs::NurbsCurve2::new(old.knots().clone(), new.points().to_vec()) {
+        Ok(curve) => Piece2d { curve: Curve2d::Nurbs(curve), range: flat.range },
+        Err(_) => own,
+    }
 }
