@@ -348,3 +348,36 @@ fn geometry_that_was_not_read_is_passed_over() {
     let face = b.brep.faces.ids().next().unwrap();
     assert!(parameter_loops(&b.brep, face, &LoopSampling::of_tolerance(TOLERANCE)).is_err());
 }
+
+/// Adds the faces of a closed cylinder from z = 1 to 3 as a shell of its own.
+fn add_void(b: &mut Builder, forward: bool) {
+    let body = b.brep.bodies.ids().next().unwrap();
+    b.shell = b.brep.shells.push(Shell { faces: Vec::new(), closed: true, forward, body });
+    b.brep.bodies[body].shells.push(b.shell);
+    let (low, high) = (Point3::new(0.0, 0.0, 1.0), Point3::new(0.0, 0.0, 3.0));
+    let (a, c) = (b.vertex(Point3::new(1.0, 0.0, 1.0)), b.vertex(Point3::new(1.0, 0.0, 3.0)));
+    let circle = |at| Curve::Circle { frame: frame(at, Vector3::z(), Vector3::x()), radius: 1.0 };
+    let (bottom, top) = (b.edge(circle(low), a, a), b.edge(circle(high), c, c));
+    let seam = b.line(a, c);
+    let side = Surface::Cylinder { frame: frame(low, Vector3::z(), Vector3::x()), radius: 1.0 };
+    b.face(side, true, &[&[(bottom, true), (seam, true), (top, false), (seam, false)]]);
+    b.face(Surface::Plane(frame(low, -Vector3::z(), Vector3::x())), true, &[&[(bottom, false)]]);
+    b.face(Surface::Plane(frame(high, Vector3::z(), Vector3::x())), true, &[&[(top, true)]]);
+}
+
+#[test]
+fn a_shell_that_is_turned_inside_out_is_found_the_outer_one_or_that_of_a_void() {
+    let mut b = cylinder();
+    add_void(&mut b, false);
+    assert_eq!(b.findings(), []);
+    let mut b = cylinder();
+    add_void(&mut b, true);
+    let findings = b.findings();
+    let [Finding::SolidInsideOut(found)] = &findings[..] else { panic!("{findings:?}") };
+    assert!(found.shell == b.shell && (found.volume - TAU).abs() < 0.01 * TAU, "{found:?}");
+    let mut b = cylinder();
+    b.brep.shells[b.shell].forward = false;
+    let findings = b.findings();
+    let [Finding::SolidInsideOut(found)] = &findings[..] else { panic!("{findings:?}") };
+    assert!((found.volume + 20.0 * PI).abs() < 0.2 * PI, "{found:?}");
+}

@@ -165,6 +165,7 @@ fn schemas_are_up_to_date() {
         ("schemas/report.v1.schema.json", resurf::job::schema::report()),
         ("schemas/feature.v1.schema.json", resurf::job::schema::feature()),
         ("schemas/detail.v1.schema.json", resurf::job::schema::detail()),
+        ("schemas/proof.v1.schema.json", resurf::job::schema::proof()),
     ];
     for (path, generated) in schemas {
         let committed = fs::read_to_string(root().join(path)).unwrap_or_default();

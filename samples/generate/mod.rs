@@ -7,6 +7,7 @@
 //! not change a file.
 
 mod assembly;
+mod crease;
 mod feature;
 mod panel;
 mod plate;
@@ -39,6 +40,7 @@ pub fn all() -> Vec<Sample> {
     let sample = |path, text: String| Sample { path, bytes: text.into_bytes() };
     vec![
         sample("assembly/assembly.step", assembly::write(&Panel::door(), Schema::Ap214)),
+        sample("crease/lines.step", crease::lines()),
         sample("curves/arch.step", wires::one_target(Target::Arch, "arch")),
         sample("curves/bow.step", wires::one_target(Target::Bow, "bow")),
         sample("curves/hook.step", wires::one_target(Target::Hook, "hook")),

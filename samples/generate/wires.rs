@@ -61,7 +61,8 @@ pub fn one_target(which: Target, name: &'static str) -> String {
     finish(records, name, "TARGET", &[curve])
 }
 
-fn finish(mut records: Records, product: &str, set: &str, curves: &[Name]) -> String {
+/// A file of free curves.
+pub fn finish(mut records: Records, product: &str, set: &str, curves: &[Name]) -> String {
     let product = records.product(product);
     let set = records.add(format!("GEOMETRIC_CURVE_SET('{set}',{})", list(curves)));
     let placement = records.placement([0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);

@@ -133,7 +133,11 @@ pub fn sample_curve(curve: &Curve, range: EdgeRange, sampling: &EdgeSampling) ->
             let last = i == per_span;
             let t = if last { pair[1] } else { pair[0] + (pair[1] - pair[0]) * (i as f64 / per_span as f64) };
             let from = points[points.len() - 1];
-            bisect(&at, from, at(t), sampling.chord, &mut points);
+            if sampling.chord.is_finite() {
+                bisect(&at, from, at(t), sampling.chord, &mut points);
+            } else {
+                points.push(at(t));
+            }
         }
     }
     points

@@ -153,6 +153,15 @@ impl Brep {
         self.faces[face].loops.iter().flat_map(|&l| self.loops[l].coedges.iter().copied())
     }
 
+    /// Whether a face lies on both sides of every edge that it has: its bounds only cut its surface open, and it is all of
+    /// that.
+    #[must_use]
+    pub fn bounds_are_seams(&self, face: FaceId) -> bool {
+        let mut edges: Vec<EdgeId> = self.coedges_of(face).map(|coedge| self.coedges[coedge].edge).collect();
+        edges.sort_unstable();
+        !edges.is_empty() && edges.chunk_by(|a, b| a == b).all(|uses| uses.len() == 2)
+    }
+
     /// Faces that use each edge, in face order; a face that uses an edge twice (a seam) stands twice.
     #[must_use]
     pub fn faces_of_edges(&self) -> Arena<EdgeId, Vec<FaceId>> {

@@ -40,6 +40,8 @@ pub enum Command {
     Diff(DiffArguments),
     /// Write one self-contained HTML page that shows a part
     View(ViewArguments),
+    /// Check a proof sheet against the part before and after
+    Verify(VerifyArguments),
     /// Measure the parts and jobs of a folder, and compare with a baseline
     Regress(RegressArguments),
     /// Put reports together
@@ -48,7 +50,7 @@ pub enum Command {
     /// Keep features for pastes without their parts
     #[command(subcommand)]
     Feature(FeatureCommand),
-    /// Print the JSON Schema of the job file, the report, a feature or curve detail
+    /// Print the JSON Schema of the job file, the report, a feature, curve detail or a proof sheet
     Schema {
         /// Which one
         of: SchemaOf,
@@ -155,8 +157,10 @@ pub struct ConvertArguments {
 /// Formats that are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Target {
-    /// The input's own bytes
+    /// The own bytes of a STEP file
     Step,
+    /// The own bytes of an IGES file
+    Iges,
     /// Binary STL
     Stl,
     /// OFF
@@ -345,6 +349,23 @@ pub struct CheckArguments {
     pub json: bool,
 }
 
+/// Arguments of `verify`.
+#[derive(Debug, Args)]
+pub struct VerifyArguments {
+    /// Proof sheet that a run wrote
+    #[arg(value_name = "PROOF")]
+    pub proof: PathBuf,
+    /// The part before the run
+    #[arg(value_name = "BEFORE")]
+    pub before: PathBuf,
+    /// The part after it
+    #[arg(value_name = "AFTER")]
+    pub after: PathBuf,
+    /// Write JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
 /// What `schema` prints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum SchemaOf {
@@ -356,4 +377,6 @@ pub enum SchemaOf {
     Feature,
     /// Curve detail of a library
     Detail,
+    /// A proof sheet
+    Proof,
 }

@@ -17,6 +17,7 @@ mod regress;
 mod report;
 mod run;
 mod show;
+mod verify;
 mod view;
 
 use clap::Parser;
@@ -42,6 +43,7 @@ pub fn main() -> u8 {
         Command::Convert(arguments) => convert::convert(&arguments, &mut printer),
         Command::Inspect(arguments) => inspect::inspect(&arguments, &mut printer),
         Command::Check(arguments) => check::check(&arguments, &mut printer),
+        Command::Verify(arguments) => verify::verify(&arguments, &mut printer),
         Command::Diff(arguments) => diff::diff(&arguments, &mut printer),
         Command::Regress(arguments) => regress::regress(&arguments, &mut printer),
         Command::Report(ReportCommand::Merge(arguments)) => report::merge(&arguments, &mut printer),
@@ -54,6 +56,7 @@ pub fn main() -> u8 {
                 SchemaOf::Report => crate::job::schema::report(),
                 SchemaOf::Feature => crate::job::schema::feature(),
                 SchemaOf::Detail => crate::job::schema::detail(),
+                SchemaOf::Proof => crate::job::schema::proof(),
             });
             exit_code::DONE
         }

@@ -12,6 +12,7 @@ mod evaluate_surface;
 mod foot_on_curve;
 pub mod nurbs;
 pub mod parameters;
+mod replica;
 pub mod surface;
 pub mod to_nurbs;
 pub mod transform;

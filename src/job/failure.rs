@@ -45,6 +45,12 @@ pub enum PartError {
     /// A side file cannot be made.
     #[error("the side mesh cannot be made: {0}")]
     Mesh(String),
+    /// A picture cannot be drawn.
+    #[error("the picture cannot be drawn: {0}")]
+    Picture(String),
+    /// What was held cannot be proved.
+    #[error("the proof sheet cannot be made: {}", .0.join("; "))]
+    Proof(Vec<String>),
     /// Another program refuses the result.
     #[error("{program} refuses the result: {}", .messages.join("; "))]
     Refused {
@@ -152,7 +158,10 @@ impl PartError {
             Self::Open(_) | Self::Damaged(_) | Self::Folder(_) | Self::NoFile(_) => code::UNREADABLE,
             Self::Setting { .. } => code::USAGE,
             Self::Operate(error) if error.code().starts_with("internal.") => code::INTERNAL,
-            Self::Operate(_) | Self::Lower(_) | Self::Mesh(_) => code::OPERATION,
+            Self::Operate(error) if error.code().ends_with(".net-too-large") => code::RESOURCE,
+            Self::Operate(_) | Self::Lower(_) | Self::Mesh(_) | Self::Picture(_) | Self::Proof(_) => {
+                code::OPERATION
+            }
             Self::NoVerdict(ValidateError::Missing { .. }) => code::VALIDATOR_MISSING,
             Self::NoVerdict(ValidateError::Scratch { .. }) => code::IO,
             Self::Internal => code::INTERNAL,
@@ -174,6 +183,8 @@ impl PartError {
             Self::Lower(_) => "write.cannot-lower",
             Self::Check(_) => "check.failed",
             Self::Mesh(_) => "mesh.failed",
+            Self::Picture(_) => "picture.failed",
+            Self::Proof(_) => "proof.failed",
             Self::Refused { .. } => "validate.refused",
             Self::NoVerdict(ValidateError::Missing { .. }) => "validate.missing",
             Self::NoVerdict(_) => "validate.no-verdict",

@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::de;
 use serde::{Deserialize, Serialize};
 
+pub use super::deform_file::Deform;
 pub use super::detail_file::DetailTransfer;
 pub use super::paste_file::FeaturePaste;
 pub use super::scale_file::ConstrainedScale;
@@ -29,9 +30,12 @@ pub struct Job {
     pub inputs: Vec<String>,
     /// Where each result goes, relative to the job file; `{dir}`, `{stem}` and `{ext}` are those of the input.
     pub output: String,
-    /// Side files beside the output: meshes for viewing and for OpenSCAD.
+    /// Side files beside the output: meshes for viewing and for OpenSCAD, and a sheet that proves what was held.
     #[serde(default)]
-    pub also: Vec<SideFormat>,
+    pub also: Vec<SideFile>,
+    /// Pictures beside the output, as PNG, of the faces that the operations changed.
+    #[serde(default)]
+    pub pictures: Vec<PictureKind>,
     /// Bounds on whatever must be approximated.
     #[serde(default)]
     pub tolerance: ToleranceSettings,
@@ -65,10 +69,10 @@ impl TryFrom<u64> for Version {
     }
 }
 
-/// A mesh format that a side file may have.
+/// A file beside the output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
-pub enum SideFormat {
+pub enum SideFile {
     /// Binary STL.
     Stl,
     /// OFF with shared vertices.
@@ -78,10 +82,12 @@ pub enum SideFormat {
     ThreeMf,
     /// Binary glTF with names and colours.
     Glb,
+    /// A sheet of what was held, which `resurf verify` checks.
+    Proof,
 }
 
-impl SideFormat {
-    /// The extension of its files.
+impl SideFile {
+    /// What stands behind the stem of its name.
     #[must_use]
     pub fn extension(self) -> &'static str {
         match self {
@@ -89,6 +95,56 @@ impl SideFormat {
             Self::Off => "off",
             Self::ThreeMf => "3mf",
             Self::Glb => "glb",
+            Self::Proof => "proof.json",
+        }
+    }
+
+    /// The format of a mesh; `None` for what is none.
+    #[must_use]
+    pub fn mesh(self) -> Option<SideFormat> {
+        match self {
+            Self::Stl => Some(SideFormat::Stl),
+            Self::Off => Some(SideFormat::Off),
+            Self::ThreeMf => Some(SideFormat::ThreeMf),
+            Self::Glb => Some(SideFormat::Glb),
+            Self::Proof => None,
+        }
+    }
+}
+
+/// A format of meshes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SideFormat {
+    /// Binary STL.
+    Stl,
+    /// OFF with shared vertices.
+    Off,
+    /// 3MF with names and colours.
+    ThreeMf,
+    /// Binary glTF with names and colours.
+    Glb,
+}
+
+/// What a picture shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize, serde::Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum PictureKind {
+    /// Highlight lines before and after.
+    Highlight,
+    /// Mean curvature before and after: red where the face bulges outwards.
+    Curvature,
+    /// Deviation of the new faces from the old: red outwards.
+    Deviation,
+}
+
+impl PictureKind {
+    /// The word of the job file, and of the file's name.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Highlight => "highlight",
+            Self::Curvature => "curvature",
+            Self::Deviation => "deviation",
         }
     }
 }
@@ -103,7 +159,7 @@ pub struct ToleranceSettings {
     pub length: Option<LengthSetting>,
 }
 
-fn positive_length<'de, D: serde::Deserializer<'de>>(
+pub(super) fn positive_length<'de, D: serde::Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<LengthSetting>, D::Error> {
     let length = Option::<LengthSetting>::deserialize(deserializer)?;
@@ -206,6 +262,8 @@ pub enum ValidatorName {
 pub enum Operation {
     /// Scale a part, while chosen features keep their shape and size.
     ConstrainedScale(Box<ConstrainedScale>),
+    /// Pull lines on a face to given curves.
+    Deform(Box<Deform>),
     /// Carry the detail of one curve onto another.
     DetailTransfer(Box<DetailTransfer>),
     /// Carry a freeform feature from one face onto another.
@@ -220,6 +278,7 @@ impl Operation {
     pub fn kind(&self) -> &'static str {
         match self {
             Self::ConstrainedScale(_) => "constrained_scale",
+            Self::Deform(_) => "deform",
             Self::DetailTransfer(_) => "detail_transfer",
             Self::FeaturePaste(_) => "feature_paste",
             Self::Simplify(_) => "simplify",
@@ -231,7 +290,7 @@ impl Operation {
     pub fn growth(&self) -> f64 {
         match self {
             Self::ConstrainedScale(scale) => scale.factors.0.into_iter().fold(1.0, f64::max),
-            Self::FeaturePaste(_) | Self::DetailTransfer(_) | Self::Simplify(_) => 1.0,
+            Self::Deform(_) | Self::FeaturePaste(_) | Self::DetailTransfer(_) | Self::Simplify(_) => 1.0,
         }
     }
 }
@@ -240,6 +299,7 @@ impl Operation {
 #[serde(rename_all = "snake_case")]
 enum OperationKind {
     ConstrainedScale,
+    Deform,
     DetailTransfer,
     FeaturePaste,
     Simplify,
@@ -266,6 +326,11 @@ impl<'de> Deserialize<'de> for Operation {
                         let scale = ConstrainedScale::deserialize(rest)?;
                         scale.check().map_err(de::Error::custom)?;
                         Ok(Operation::ConstrainedScale(Box::new(scale)))
+                    }
+                    OperationKind::Deform => {
+                        let deform = Deform::deserialize(rest)?;
+                        deform.check().map_err(de::Error::custom)?;
+                        Ok(Operation::Deform(Box::new(deform)))
                     }
                     OperationKind::DetailTransfer => {
                         let transfer = DetailTransfer::deserialize(rest)?;

@@ -5,6 +5,8 @@
 
 mod clock;
 pub mod contents;
+pub mod deform_file;
+mod deform_operate;
 pub mod detail_file;
 pub mod detail_library;
 mod detail_operate;
@@ -14,6 +16,7 @@ pub mod feature_file;
 pub mod file;
 pub mod finding;
 pub mod flagged;
+mod held;
 pub mod illustrate;
 mod json;
 pub mod judge;
@@ -27,7 +30,9 @@ pub mod own_check;
 pub mod part;
 pub mod paste_file;
 mod paste_operate;
+mod pictures;
 pub mod plan;
+pub mod proof;
 pub mod read;
 pub mod report;
 pub mod restate;
@@ -38,6 +43,7 @@ pub mod schema;
 pub mod select;
 mod select_curve;
 pub mod selector;
+mod side;
 pub mod simplify_file;
 pub mod validation_property;
 

@@ -7,8 +7,9 @@ use super::part::Read;
 use super::report::{DiagnosticReport, OperationReport};
 use super::select::SelectError;
 use crate::diagnostic::Diagnostic;
-use crate::model::{ChangeSet, Model};
+use crate::model::{ChangeSet, Model, Origin};
 use crate::ops::OperationError;
+use crate::ops::constrained_scale::plan::HeldPiece;
 use crate::source::Source;
 
 /// An operation cannot be done on this part.
@@ -54,10 +55,18 @@ pub enum OperateError {
         reason: String,
     },
     /// No curve has the name.
-    #[error("source.region.curve: #{name} is no curve that was read")]
+    #[error("source.region.curve: {name} is no curve that was read")]
     NoCurve {
-        /// The name.
-        name: u64,
+        /// Its record.
+        name: Origin,
+    },
+    /// A line of a deformation cannot be had.
+    #[error("{key}: {reason}")]
+    Line {
+        /// The key: `lines[0].from`.
+        key: String,
+        /// Why.
+        reason: String,
     },
     /// A hold does not fit the part.
     #[error("hold: {0}")]
@@ -89,6 +98,7 @@ impl OperateError {
             Self::DetailFile { .. } => "job.detail-file",
             Self::FeatureFile { .. } => "job.feature-file",
             Self::NoCurve { .. } => "paste.no-curve",
+            Self::Line { .. } => "deform.no-line",
             Self::Hold(_) => "select.no-hold",
             Self::Operation(error) => error.code(),
             Self::NoFace => "select.no-face",
@@ -97,7 +107,15 @@ impl OperateError {
 }
 
 /// What an operation wants changed, and what it tells.
-pub type Operated = (ChangeSet, OperationReport);
+#[derive(Debug)]
+pub struct Operated {
+    /// The changes.
+    pub changes: ChangeSet,
+    /// What is to be told.
+    pub report: OperationReport,
+    /// What it holds.
+    pub held: Vec<HeldPiece>,
+}
 
 /// Plans one operation on a model.
 ///
@@ -107,7 +125,13 @@ pub fn operate(model: &Model, source: &Source, operation: &Operation) -> Result<
     match operation {
         Operation::ConstrainedScale(words) => {
             let planned = super::scale_operate::planned(model, words)?;
-            Ok(reported("constrained_scale", planned.change_set, &planned.measures, &planned.notes, source))
+            let (changes, measures) = (planned.change_set, &planned.measures);
+            let operated = reported("constrained_scale", changes, measures, &planned.notes, source);
+            Ok(Operated { held: planned.held, ..operated })
+        }
+        Operation::Deform(words) => {
+            let planned = super::deform_operate::planned(model, words)?;
+            Ok(reported("deform", planned.change_set, &planned.measures, &[], source))
         }
         Operation::DetailTransfer(words) => {
             let planned = super::detail_operate::planned(model, words)?;
@@ -138,7 +162,7 @@ fn reported(
         measures: serde_json::to_value(measures).unwrap_or_default(),
         notes: notes.iter().map(|note| DiagnosticReport::new(note, source)).collect(),
     };
-    (changes, report)
+    Operated { changes, report, held: Vec::new() }
 }
 
 /// The model of another file, whole or not at all.

@@ -137,6 +137,6 @@ fn origin(model: &Model, finding: &Finding) -> Origin {
         Finding::SliverFace(f) => origins.faces[f.face],
         Finding::MissingSeam(f) => origins.faces[f.face],
         Finding::InconsistentSense(f) => origins.faces[f.face],
-        Finding::SolidInsideOut(f) => origins.bodies[f.body],
+        Finding::SolidInsideOut(f) => origins.shells[f.shell],
     }
 }

@@ -7,7 +7,7 @@ use globset::{GlobBuilder, GlobMatcher};
 use serde::{Deserialize, Serialize};
 
 use super::Job;
-use super::file::Operation;
+use super::file::{Operation, SideFile};
 use crate::document::Format;
 
 /// One part of a run.
@@ -52,8 +52,8 @@ pub enum PlanError {
         /// The unknown name.
         name: String,
     },
-    /// The output's extension is that of another format.
-    #[error("output {} is not STEP; other formats are not written yet", .output.display())]
+    /// The output's extension is that of no format of parts.
+    #[error("output {} is neither STEP nor IGES; name it .step or .igs", .output.display())]
     OtherFormat {
         /// The output.
         output: PathBuf,
@@ -68,6 +68,9 @@ pub enum PlanError {
         /// The file.
         output: PathBuf,
     },
+    /// A proof sheet is asked for, and no operation holds anything.
+    #[error("`also` asks for a proof, and no operation of the job has a `hold` to prove")]
+    NothingToProve,
     /// A part would be written over an input.
     #[error("{} would be written over itself or another input", .output.display())]
     OverInput {
@@ -89,8 +92,7 @@ fn near(nearest: &Option<String>) -> String {
 /// # Errors
 /// [`PlanError::NoMatch`].
 pub fn resolve(job: &mut Job, folder: &Path) -> Result<(), PlanError> {
-    for operation in &mut job.operation {
-        let Some(file) = file_of(operation) else { continue };
+    for file in job.operation.iter_mut().flat_map(files) {
         let path = folder.join(&*file);
         if !path.is_file() {
             let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
@@ -101,17 +103,18 @@ pub fn resolve(job: &mut Job, folder: &Path) -> Result<(), PlanError> {
     Ok(())
 }
 
-/// The file that an operation reads beside its part.
-fn file_of(operation: &mut Operation) -> Option<&mut String> {
+/// Files that an operation reads.
+fn files(operation: &mut Operation) -> Vec<&mut String> {
     match operation {
-        Operation::ConstrainedScale(_) | Operation::Simplify(_) => None,
+        Operation::ConstrainedScale(_) | Operation::Simplify(_) => Vec::new(),
+        Operation::Deform(deform) => deform.files().collect(),
         Operation::DetailTransfer(transfer) => {
             let source = &mut transfer.source;
-            source.file.as_mut().or(source.detail.as_mut())
+            source.file.as_mut().or(source.detail.as_mut()).into_iter().collect()
         }
         Operation::FeaturePaste(paste) => {
             let source = &mut paste.source;
-            source.file.as_mut().or(source.feature.as_mut())
+            source.file.as_mut().or(source.feature.as_mut()).into_iter().collect()
         }
     }
 }
@@ -120,7 +123,7 @@ fn file_of(operation: &mut Operation) -> Option<&mut String> {
 #[must_use]
 pub fn referenced(job: &Job) -> Vec<PathBuf> {
     let mut operations = job.operation.clone();
-    operations.iter_mut().filter_map(file_of).map(|file| PathBuf::from(&*file)).collect()
+    operations.iter_mut().flat_map(files).map(|file| PathBuf::from(&*file)).collect()
 }
 
 /// The parts of a job, sorted by path; `folder` is the job file's.
@@ -128,6 +131,16 @@ pub fn referenced(job: &Job) -> Vec<PathBuf> {
 /// # Errors
 /// [`PlanError`]. Nothing but names is looked at.
 pub fn parts(job: &Job, folder: &Path) -> Result<Vec<Part>, PlanError> {
+    let holds = |operation: &Operation| match operation {
+        Operation::ConstrainedScale(scale) => !scale.hold.is_empty(),
+        Operation::Deform(_)
+        | Operation::DetailTransfer(_)
+        | Operation::FeaturePaste(_)
+        | Operation::Simplify(_) => false,
+    };
+    if job.also.contains(&SideFile::Proof) && !job.operation.iter().any(holds) {
+        return Err(PlanError::NothingToProve);
+    }
     let mut inputs = Vec::new();
     for pattern in &job.inputs {
         inputs.extend(matches(pattern, folder)?);
@@ -139,7 +152,7 @@ pub fn parts(job: &Job, folder: &Path) -> Result<Vec<Part>, PlanError> {
     for input in inputs {
         let output = folder.join(fill(&job.output, &input, folder)?);
         let extension = output.extension().and_then(|e| e.to_str()).unwrap_or_default();
-        if Format::of_extension(extension) != Some(Format::Step) {
+        if Format::of_extension(extension).is_none() {
             return Err(PlanError::OtherFormat { output });
         }
         if let Some(first) = outputs.insert(normal(&output), input.clone()) {
@@ -284,7 +297,7 @@ mod tests {
         assert!(matches!(plan(&["**/*.step"], "out/{stem}.step"), Err(PlanError::Clash { .. })));
         assert!(matches!(plan(&["a.step"], "./{stem}.{ext}"), Err(PlanError::OverInput { .. })));
         assert!(matches!(plan(&["a.step"], "o/{name}.step"), Err(PlanError::BadTemplate { .. })));
-        assert!(matches!(plan(&["a.step"], "o/{stem}.igs"), Err(PlanError::OtherFormat { .. })));
+        assert!(matches!(plan(&["a.step"], "o/{stem}.stl"), Err(PlanError::OtherFormat { .. })));
         assert!(matches!(plan(&["[a.step"], "o.step"), Err(PlanError::BadGlob { .. })));
     }
 }

@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::failure::{PartError, code};
+use super::file::PictureKind;
 use super::own_check::OwnFinding;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::source::Source;
@@ -117,6 +118,9 @@ pub struct PartReport {
     pub write_path: Option<WritePath>,
     /// Side files that were written.
     pub side_files: Vec<String>,
+    /// Pictures that were written.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pictures: Vec<PictureReport>,
     /// Edits on the input's bytes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub edits: Option<Edits>,
@@ -147,6 +151,19 @@ pub struct PartReport {
     /// Greatest memory of the process so far, in bytes, where the system tells.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub peak_bytes: Option<u64>,
+}
+
+/// A picture beside the output.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct PictureReport {
+    /// Its file.
+    pub path: String,
+    /// What it shows.
+    pub kind: PictureKind,
+    /// The number that has the full red; the same below zero has the full blue. A curvature in 1 over file units or a
+    /// distance in file units; absent for highlight lines.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub full_colour: Option<f64>,
 }
 
 /// Why a part failed.
@@ -255,6 +272,7 @@ impl PartReport {
             failure: None,
             write_path: None,
             side_files: Vec::new(),
+            pictures: Vec::new(),
             edits: None,
             operations: Vec::new(),
             restated: Vec::new(),
@@ -276,6 +294,7 @@ impl PartReport {
         self.code = error.exit_code();
         self.failure = Some(error.failure());
         self.side_files.clear();
+        self.pictures.clear();
     }
 
     /// Takes over the facts about the input.

@@ -11,15 +11,17 @@ use serde::{Deserialize, Serialize};
 use super::failure::PartError;
 use super::file::{Job, Operation};
 use super::flagged::flagged;
+use super::held::HeldRecords;
 use super::judge;
 use super::measure::Figures;
-use super::operate::operate;
+use super::operate::{Operated, operate};
 use super::output::Staged;
 use super::own_check::{OwnFinding, changed_faces, findings_of_faces, new_findings, with_neighbours};
 use super::part::Read;
 use super::plan::Part;
 use super::report::{DiagnosticReport, Edits, PartReport, Status, WritePath};
 use super::restate::{self, Outcome, restated};
+use super::side::{self, Made};
 use crate::document::{Document, Stamp};
 use crate::model::{AnnotationKind, Balance, ChangeSet, Model, Origin};
 
@@ -96,6 +98,7 @@ fn go(
 ) -> Result<(), PartError> {
     watch(Stage::Read);
     let mut read = Read::file(&part.input)?;
+    read.refuse_other_format(&part.output)?;
     let result = changed_bytes(job, part, &mut read, stamp, watch, report);
     report.take_diagnostics(&read.diagnostics, read.document.source());
     let result = result?;
@@ -103,9 +106,10 @@ fn go(
     // The input's bytes serve again when nothing changed: a copy would double the memory.
     let bytes = changed.as_deref().unwrap_or_else(|| read.document.source().bytes());
     watch(Stage::Check);
-    let needs_model = !job.operation.is_empty() || !job.also.is_empty() || !job.validate.with.is_empty();
+    let wanted = [job.operation.is_empty(), job.also.is_empty(), job.pictures.is_empty()];
+    let needs_model = wanted.contains(&false) || !job.validate.with.is_empty();
     let after = if needs_model { Some(read_again(job, part, bytes, &result, report)?) } else { None };
-    if let Some(model) = &after {
+    if let Some((_, model)) = &after {
         chord(job, model)?;
     }
     if mode == Mode::DryRun {
@@ -114,8 +118,14 @@ fn go(
     watch(Stage::Judge);
     let staged = Staged::write(&part.output, bytes).map_err(PartError::Output)?;
     let mut sides = Vec::new();
-    if let Some(model) = &after {
-        sides = side_files(job, part, model, report)?;
+    if let Some((document, model)) = &after {
+        let made = Made {
+            before: (&read.document, result.model.as_ref().unwrap_or(model)),
+            after: (document, model),
+            held: result.held.groups(),
+            program: &stamp.preprocessor,
+        };
+        sides = side::staged(job, part, &made, chord(job, model)?, report)?;
         let judged = judge::judge(&job.validate, staged.path(), model, None)?;
         report.validators = judged.verdicts;
         report.losses.extend(
@@ -138,6 +148,10 @@ fn go(
 struct Changed {
     /// The bytes of the result; `None` when nothing changes.
     bytes: Option<Vec<u8>>,
+    /// What the input means, where operations had to know.
+    model: Option<Model>,
+    /// Records that were held.
+    held: HeldRecords,
     /// Faces that the operations change, with their neighbours.
     touched: BTreeSet<Origin>,
     /// All faces of the input.
@@ -175,6 +189,7 @@ fn changed_bytes(
     let mut bytes: Option<Vec<u8>> = None;
     let mut faces: BTreeSet<Origin> = BTreeSet::new();
     let mut concerned = restate::Changed::default();
+    let mut held = HeldRecords::default();
     for (at, operation) in job.operation.iter().enumerate() {
         let kind = operation.kind().to_owned();
         watch(Stage::Operation { number: at + 1, of: job.operation.len(), kind });
@@ -184,8 +199,9 @@ fn changed_bytes(
             Some((read, model)) => (&read.document, model),
             None => (&read.document, &model),
         };
-        let (changes, measured) = operate(model, document.source(), operation)?;
-        report.operations.push(measured);
+        let Operated { changes, report: told, held: pieces } = operate(model, document.source(), operation)?;
+        report.operations.push(told);
+        held.follow(model, &changes, &pieces);
         let patch = document.lower(model, &changes, stamp)?;
         let edits: Edits = patch.counts().into();
         report.edits = Some(report.edits.map_or(edits, |before| before.followed_by(&edits)));
@@ -198,13 +214,15 @@ fn changed_bytes(
             bytes = Some(patch.apply(document.source().bytes()));
         }
     }
-    let Some(bytes) = bytes else { return Ok(Changed::default()) };
+    let Some(bytes) = bytes else {
+        return Ok(Changed { model: Some(model), held, ..Changed::default() });
+    };
     report.write_path = Some(WritePath::Patched);
     let bytes = Some(state_anew(bytes, part, &model, &concerned, stamp, report)?);
     report.losses.extend(flagged(&read.document, &model, &concerned));
     let findings = findings_of_faces(&read.document, &model, &faces, 1.0);
     let known = model.origins.faces.iter().map(|(_, origin)| *origin).collect();
-    Ok(Changed { bytes, touched: faces, known, findings, surfaces, balance })
+    Ok(Changed { bytes, model: Some(model), held, touched: faces, known, findings, surfaces, balance })
 }
 
 /// What an operation has made, as the next one finds it.
@@ -280,7 +298,7 @@ fn read_again(
     bytes: &[u8],
     wanted: &Changed,
     report: &mut PartReport,
-) -> Result<Model, PartError> {
+) -> Result<(Document, Model), PartError> {
     let extension = part.output.extension().and_then(|e| e.to_str()).unwrap_or_default();
     let mut read = Read::bytes(bytes.to_vec(), extension)?;
     let model = read.model();
@@ -316,28 +334,7 @@ fn read_again(
         report.findings = own;
     }
     report.after = Some(after);
-    if findings.is_empty() { Ok(model) } else { Err(PartError::Check(findings)) }
-}
-
-fn side_files(
-    job: &Job,
-    part: &Part,
-    model: &Model,
-    report: &mut PartReport,
-) -> Result<Vec<Staged>, PartError> {
-    if job.also.is_empty() {
-        return Ok(Vec::new());
-    }
-    let chord = chord(job, model)?;
-    let mut staged = Vec::new();
-    for &format in &job.also {
-        let path = part.output.with_extension(format.extension());
-        staged.push(
-            Staged::write(&path, &judge::side_bytes(model, chord, format)?).map_err(PartError::Output)?,
-        );
-        report.side_files.push(path.to_string_lossy().into_owned());
-    }
-    Ok(staged)
+    if findings.is_empty() { Ok((read.document, model)) } else { Err(PartError::Check(findings)) }
 }
 
 /// The job's bound on its side meshes.

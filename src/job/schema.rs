@@ -1,8 +1,9 @@
-//! JSON Schema of the job file, of the report and of a feature, generated from their types.
+//! JSON Schema of the job file, of the report, of features, details and proof sheets, generated from their types.
 
 use super::detail_library::DetailFile;
 use super::feature_file::FeatureFile;
 use super::file::Job;
+use super::proof::ProofSheet;
 use super::report::Report;
 
 /// The schema of the job file, with a line feed behind it.
@@ -27,6 +28,12 @@ pub fn feature() -> String {
 #[must_use]
 pub fn detail() -> String {
     text(&schemars::schema_for!(DetailFile))
+}
+
+/// The schema of a proof sheet, with a line feed behind it.
+#[must_use]
+pub fn proof() -> String {
+    text(&schemars::schema_for!(ProofSheet))
 }
 
 fn text(schema: &schemars::Schema) -> String {

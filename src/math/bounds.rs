@@ -64,6 +64,12 @@ impl BoundingBox {
         if self.is_empty() { 0.0 } else { (self.max - self.min).norm() }
     }
 
+    /// Whether a point is in it, its border counted.
+    #[must_use]
+    pub fn contains(&self, point: &Point3<f64>) -> bool {
+        (0..3).all(|axis| point[axis] >= self.min[axis] && point[axis] <= self.max[axis])
+    }
+
     /// Square of the distance of a point from the box; 0 inside, infinite for the empty box.
     #[must_use]
     pub fn distance_squared(&self, point: &Point3<f64>) -> f64 {

@@ -1,8 +1,9 @@
 //! Symmetric matrices over the nodes of a rectangular grid, in which only near nodes are coupled.
 //!
 //! Normal equations of tensor-product splines and of bar networks have this form. Entries stand in a block for each node,
-//! so that adding one is an index computation; the factor is the sparse one. Knows no splines.
+//! so that adding one is an index computation; the factor is the sparse one, by nested dissection. Knows no splines.
 
+use super::nested_dissection::nested_dissection;
 use super::sparse::{SingularSystem, SymmetricFactor};
 use sprs::CsMat;
 
@@ -95,10 +96,18 @@ impl GridMatrix {
         self.entries[self.place(a, b)]
     }
 
+    /// Adds to an entry within reach, and to no other: its mirror image is another entry.
+    ///
+    /// # Panics
+    /// For nodes out of reach of each other.
+    pub fn add(&mut self, a: usize, b: usize, value: f64) {
+        let at = self.place(a, b);
+        self.entries[at] += value;
+    }
+
     /// Adds to the diagonal entry of a node.
     pub fn add_diagonal(&mut self, a: usize, value: f64) {
-        let at = self.place(a, a);
-        self.entries[at] += value;
+        self.add(a, a, value);
     }
 
     /// Adds `factor * v vᵀ` of a row.
@@ -171,29 +180,48 @@ impl GridMatrix {
         (0..self.size()).map(row).collect()
     }
 
-    /// Factors the rows and columns of some nodes, ascending; the other nodes are held at zero.
-    ///
-    /// # Errors
-    /// [`SingularSystem`].
-    pub fn factored(&self, nodes: &[usize]) -> Result<GridFactor, SingularSystem> {
+    /// The lower triangle of the rows and columns of some nodes, ascending, as compressed rows.
+    #[must_use]
+    pub fn lower(&self, nodes: &[usize]) -> CsMat<f64> {
         let mut number = vec![usize::MAX; self.size()];
         for (k, &a) in nodes.iter().enumerate() {
             number[a] = k;
         }
         let (mut starts, mut indices, mut data) = (vec![0], Vec::new(), Vec::new());
         for &a in nodes {
-            for b in self.around(a).filter(|&b| number[b] != usize::MAX) {
-                indices.push(number[b]);
-                data.push(self.entry(a, b));
+            for b in self.around(a).take_while(|b| *b <= a).filter(|&b| number[b] != usize::MAX) {
+                let entry = self.entry(a, b);
+                // Not all nodes within reach are coupled: of a Laplacian only the four next.
+                if entry != 0.0 || a == b {
+                    indices.push(number[b]);
+                    data.push(entry);
+                }
             }
             starts.push(indices.len());
         }
-        let matrix = CsMat::new((nodes.len(), nodes.len()), starts, indices, data);
-        Ok(GridFactor { factor: SymmetricFactor::new(&matrix)?, nodes: nodes.to_vec(), size: self.size() })
+        CsMat::new((nodes.len(), nodes.len()), starts, indices, data)
+    }
+
+    /// Factors the rows and columns of some nodes, ascending, of which the entries at and before the diagonal are read;
+    /// the other nodes are held at zero.
+    ///
+    /// # Errors
+    /// [`SingularSystem`].
+    pub fn factored(&self, nodes: &[usize]) -> Result<GridFactor, SingularSystem> {
+        let places: Vec<[usize; 2]> = nodes.iter().map(|a| [a / self.columns, a % self.columns]).collect();
+        let order = nested_dissection(&places, self.reach);
+        let factor = SymmetricFactor::ordered(&self.lower(nodes), &order)?;
+        Ok(GridFactor { factor, nodes: nodes.to_vec(), size: self.size() })
     }
 }
 
 impl GridFactor {
+    /// The factor, over the unknowns alone.
+    #[must_use]
+    pub fn unknowns(&self) -> &SymmetricFactor {
+        &self.factor
+    }
+
     /// Solves for right sides of one row of `D` numbers for each node of the grid; held nodes get zeros.
     ///
     /// # Panics

@@ -3,6 +3,7 @@
 //! A [`Mesh`] is made from a B-rep or read from bytes; it never becomes a B-rep again. Knows formats of
 //! triangles only, and no file system: writers fill byte vectors, readers take slices.
 
+pub mod divide;
 pub mod glb;
 mod integrity;
 mod nearest;

@@ -1,6 +1,7 @@
 //! Why an operation cannot be done on a part.
 
 use super::constrained_scale::ScaleError;
+use super::deform::DeformError;
 use super::detail_transfer::TransferError;
 use super::feature_paste::PasteError;
 use super::simplify::SimplifyError;
@@ -22,6 +23,9 @@ pub enum OperationError {
     /// A face could not be scaled.
     #[error(transparent)]
     Scale(#[from] ScaleError),
+    /// A face could not be deformed.
+    #[error(transparent)]
+    Deform(#[from] DeformError),
     /// Detail could not be carried over.
     #[error(transparent)]
     Transfer(#[from] TransferError),
@@ -108,6 +112,7 @@ impl OperationError {
     pub fn code(&self) -> &'static str {
         match self {
             Self::Scale(error) => error.code(),
+            Self::Deform(error) => error.code(),
             Self::Transfer(error) => error.code(),
             Self::Paste(error) => error.code(),
             Self::Simplify(error) => error.code(),

@@ -4,6 +4,7 @@
 //! [`OperationError`] and no change set.
 
 pub mod constrained_scale;
+pub mod deform;
 pub mod detail_transfer;
 pub mod error;
 pub mod feature_paste;

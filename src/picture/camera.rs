@@ -1,7 +1,7 @@
 //! Parallel projection and the places of the views in the picture.
 
 use super::View;
-use crate::math::{Point3, Vector3};
+use crate::math::{BoundingBox, Point3, Vector3};
 use crate::mesh::Mesh;
 
 /// White space around every view, as a share of the picture's width.
@@ -56,9 +56,10 @@ impl Camera {
         [point.coords.dot(&self.right), point.coords.dot(&self.up), point.coords.dot(&self.eye)]
     }
 
-    /// Least and greatest coordinates on the picture plane of what the triangles use.
-    fn bounds(&self, mesh: &Mesh) -> Option<[[f64; 2]; 2]> {
-        mesh.corners().flatten().map(|p| self.plane(&p)).fold(None, |bounds, [x, y, _]| {
+    /// Least and greatest coordinates on the picture plane of what the triangles use, as far as it is to be drawn.
+    fn bounds(&self, mesh: &Mesh, focus: Option<&BoundingBox>) -> Option<[[f64; 2]; 2]> {
+        let drawn = |p: &Point3<f64>| focus.is_none_or(|focus| focus.contains(p));
+        mesh.corners().flatten().filter(drawn).map(|p| self.plane(&p)).fold(None, |bounds, [x, y, _]| {
             let [[x0, y0], [x1, y1]] = bounds.unwrap_or([[x, y]; 2]);
             Some([[x0.min(x), y0.min(y)], [x1.max(x), y1.max(y)]])
         })
@@ -66,8 +67,8 @@ impl Camera {
 
     /// Places views in one row at one scale, centred on one line; `None` when no view has an extent.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts of floats saturate")]
-    pub(super) fn lay_out(&self, views: &[View], width: u32) -> Option<Layout> {
-        let bounds: Vec<_> = views.iter().map(|v| self.bounds(v.mesh).unwrap_or_default()).collect();
+    pub(super) fn lay_out(&self, views: &[View], width: u32, focus: Option<&BoundingBox>) -> Option<Layout> {
+        let bounds: Vec<_> = views.iter().map(|v| self.bounds(v.mesh, focus).unwrap_or_default()).collect();
         let sizes: Vec<_> = bounds.iter().map(|[low, high]| [high[0] - low[0], high[1] - low[1]]).collect();
         let total: f64 = sizes.iter().map(|s| s[0]).sum();
         let tallest = sizes.iter().map(|s| s[1]).fold(0.0, f64::max);

@@ -10,7 +10,7 @@ mod outline;
 mod raster;
 mod shade;
 
-use crate::math::{Point3, Vector3};
+use crate::math::{BoundingBox, Point3, Vector3};
 use crate::mesh::Mesh;
 use camera::Camera;
 
@@ -39,6 +39,8 @@ pub struct PictureOptions {
     pub lights_height: f64,
     /// Pairs of a dark and a light band across each view's width, were it flat.
     pub bands: f64,
+    /// The part of space to draw; `None` for all of every mesh.
+    pub focus: Option<BoundingBox>,
 }
 
 impl Default for PictureOptions {
@@ -51,6 +53,7 @@ impl Default for PictureOptions {
             lights_along: Vector3::y(),
             lights_height: 1.0,
             bands: 14.0,
+            focus: None,
         }
     }
 }
@@ -154,7 +157,8 @@ impl Canvas {
                 return Err(PictureError::UnsoundMesh { view });
             }
         }
-        let layout = camera.lay_out(views, options.width).ok_or(PictureError::Empty)?;
+        let layout =
+            camera.lay_out(views, options.width, options.focus.as_ref()).ok_or(PictureError::Empty)?;
         let (width, height) = (layout.width, layout.height);
         if !(1..=LONGEST_SIDE).contains(&width) || !(1..=LONGEST_SIDE).contains(&height) {
             return Err(PictureError::Size { width, height });

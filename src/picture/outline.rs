@@ -97,7 +97,10 @@ fn stroke(
     let mut drawing = false;
     for pair in chain.windows(2) {
         let [from, to] = [projected[pair[0] as usize], projected[pair[1] as usize]];
-        let visible = |[x, y, depth]: Projected| depth + BIAS >= raster.depth(x, y);
+        let within = |x: f64, size: u32| x >= 0.0 && x <= f64::from(size);
+        let visible = |[x, y, depth]: Projected| {
+            within(x, place.width) && within(y, place.height) && depth + BIAS >= raster.depth(x, y)
+        };
         if !(visible(from) && visible(to)) {
             drawing = false;
             continue;

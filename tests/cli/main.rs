@@ -3,15 +3,22 @@
 mod accepted;
 mod batch;
 mod cluster;
+mod deform;
 mod detail;
 mod diff;
 mod jobs;
 mod locality;
+#[path = "../support/occ.rs"]
+#[allow(dead_code, reason = "shared with other test binaries")]
+mod occ;
 mod parts;
 mod paste;
-mod paste_corpus;
+mod paste_golden;
 mod paste_targets;
+mod paste_words;
 mod patho;
+mod pictures;
+mod proof;
 mod regress;
 mod solids;
 mod stated;

@@ -112,33 +112,6 @@ fn letters_and_a_turned_groove_on_the_plane_top_of_a_solid() {
 }
 
 #[test]
-fn letters_on_the_skin_of_a_thin_solid() {
-    let text = job(
-        "vamp.step",
-        "\"freecad\"",
-        &[
-            "source = { file = \"symbol.step\" }\ntarget = { face = { name = \"OUTER_SKIN\" }, at = [170, 8, 75] }\nscale = [0.6, 0.6, 1.0]",
-        ],
-    );
-    let fixture = with_features("vamp/vamp.step").file("job.toml", text);
-    accepted(&fixture, "vamp.step", "OUTER_SKIN", 3.0);
-}
-
-#[test]
-fn a_turned_and_mirrored_bump_on_a_door_between_its_holes() {
-    let text = job(
-        "door-solid.step",
-        "\"freecad\"",
-        &[
-            "source = { file = \"bump.step\" }\ntarget = { face = { name = \"OUTER_SKIN\" }, at = [500, 500, 95] }\n\
-         rotate = \"30 deg\"\nmirror = \"v\"\ntolerance = \"0.05 mm\"",
-        ],
-    );
-    let fixture = with_features("door-solid/door-solid.step").file("job.toml", text);
-    accepted(&fixture, "door-solid.step", "OUTER_SKIN", 6.6);
-}
-
-#[test]
 fn a_row_of_grooves_by_the_biharmonic_method() {
     let text = job(
         "hood.step",
@@ -219,8 +192,11 @@ fn every_bad_input_has_its_own_error() {
         (region("contour = [[0, 0, 0], [90, 0, 0], [90, 90, 0]]"), "4 paste.contour-projection-failed"),
         (
             region("contour = [[-90, -90, 0], [90, -90, 0], [90, 90, 0], [-90, 90, 0]]"),
-            "4 paste.contour-projection-failed",
+            "4 paste.contour-larger-than-face",
         ),
+        (region("contour = [[50, 50, 0], [90, 50, 0], [90, 90, 0]]"), "4 paste.contour-off-face"),
+        (region("polygon = [[0, 0.2], [0.8, 0.2], [0.8, 0.8]]"), "4 paste.contour-touches-border"),
+        (region("contour = [[-40, 0, 0], [10, -10, 0], [10, 10, 0]]"), "4 paste.contour-touches-border"),
         (
             format!("{source}\ntarget = {{ face = {{ name = \"TOP\" }}, at = [-30, 80, 12] }}"),
             "4 paste.place-off-face",

@@ -54,15 +54,18 @@ fn named(model: &Model, name: &str) -> FaceId {
 #[test]
 fn the_door_sample_has_the_specified_figures() {
     let rows = [
-        ([1.1, 1.2, 1.25], [0.51, 0.15, 0.63, 0.945, 0.983, 1.016]),
-        ([2.0; 3], [2.22, 0.63, 2.46, 0.449, 0.760, 1.105]),
+        ([1.1, 1.2, 1.25], 0.51, [0.15, 0.63, 0.945, 0.983, 1.016]),
+        ([2.0; 3], 2.22, [0.63, 2.46, 0.449, 0.760, 1.105]),
     ];
     let model = sample("door/door.step");
-    for (factors, expected) in rows {
+    for (factors, greatest_of_grid, expected) in rows {
         let plan = run(&model, factors, Scope::Part).unwrap();
         let m: &FaceMeasures = &plan.measures.faces[0];
+        // The table's grid misses corners of cells, where ours is looked for too: never less, and proved not to be much more.
+        let (greatest, bound) = (m.deviation_max, m.deviation_bound.unwrap());
+        assert!((0.95 * greatest_of_grid..=1.1 * greatest_of_grid).contains(&greatest), "{greatest}");
+        assert!((greatest..=1.05 * greatest).contains(&bound), "{bound} proved, {greatest} found");
         let found = [
-            m.deviation_max,
             m.deviation_rms,
             m.normal_angle_max_deg,
             m.gaussian_correlation.unwrap(),

@@ -6,6 +6,7 @@ mod certified;
 mod errors;
 mod files;
 mod invariants;
+mod methods;
 mod models;
 mod panels;
 mod parts;

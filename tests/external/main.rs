@@ -10,7 +10,11 @@ use serde_json::Value;
 
 mod held;
 mod measures;
+mod referee;
 
+#[path = "../support/occ.rs"]
+#[allow(dead_code, reason = "shared with other test binaries")]
+mod occ;
 #[path = "../support/mod.rs"]
 #[allow(dead_code, reason = "shared with other test binaries")]
 mod support;
@@ -21,13 +25,7 @@ fn root() -> &'static Path {
 
 /// The interpreter that has Open CASCADE.
 fn python() -> Option<PathBuf> {
-    let python = PathBuf::from(std::env::var_os("RESURF_OCC_PYTHON").unwrap_or_else(|| "python3".into()));
-    let script = root().join("tests/external/occ_attributes.py");
-    let can = Command::new(&python).arg(script).arg("--can").output();
-    let can = can.is_ok_and(|output| output.status.success());
-    let required = std::env::var("RESURF_REQUIRE_OCC").is_ok_and(|value| value == "1");
-    assert!(can || !required, "{} has no OCP: `pip install cadquery-ocp`", python.display());
-    can.then_some(python)
+    occ::open_cascade("occ_attributes.py")
 }
 
 /// What Open CASCADE reads of a file beside its geometry.

@@ -79,8 +79,14 @@ fn contours_in_space_that_miss_or_stay_open_are_refused() {
     };
     let plane = Plane { origin: Point3::new(0.0, 0.0, 3.0), normal: Vector3::z() };
     assert_eq!(project_contour(&target, &ring(1.0), plane).unwrap().len(), 40);
-    let missed = project_contour(&target, &ring(9.0), plane).unwrap_err();
-    assert_eq!(missed, PasteError::ContourProjectionFailed { point: 0 });
+    // The cylinder's part is 8.6 wide and 10 long.
+    assert_eq!(project_contour(&target, &ring(9.0), plane).unwrap_err(), PasteError::ContourLargerThanFace);
+    let beside: Vec<_> = ring(1.0).iter().map(|p| p + Vector3::new(20.0, 0.0, 0.0)).collect();
+    assert_eq!(project_contour(&target, &beside, plane).unwrap_err(), PasteError::ContourOffFace);
+    let across: Vec<_> = ring(1.0).iter().map(|p| p + Vector3::new(0.0, 5.0, 0.0)).collect();
+    let left = project_contour(&target, &across, plane).unwrap_err();
+    // The second point is the first above the end at y = 5.
+    assert_eq!(left, PasteError::ContourProjectionFailed { point: 1 });
     assert_eq!(closed_points(ring(1.0)).unwrap_err().code(), "paste.contour-open");
     let mut closed = ring(1.0);
     closed.push(closed[0]);

@@ -129,25 +129,38 @@ fn a9_the_scale_of_the_knots_does_not_matter() {
     }
 }
 
-/// 24 angles, with and without mirror, three scales: the errors are within the stated tolerance.
+/// The cross of 24 angles, with and without mirror, and three scales: the result is within the stated tolerance of the
+/// turned feature at every place, and the report does not say less than there is.
 #[test]
 fn a10_the_fit_turns_mirrors_and_scales() {
     let (source, target) = (source(), moved_plane([3, 3]));
-    for step in 0..24 {
-        let (mirror, sign) = if step % 2 == 0 { (Mirror::None, 1.0) } else { (Mirror::V, -1.0) };
-        let scale = [[1.0; 3], [1.3, 0.8, 1.5], [0.7; 3]][step % 3];
-        let angle = (15.0 * step as f64).to_radians();
-        let settings = Settings { angle, mirror, scale, method: Some(Method::Fit), ..Settings::new(1e-2) };
+    let tolerance = 2e-4;
+    let cases = (0..24).flat_map(|step| [Mirror::None, Mirror::V].map(|mirror| (step, mirror)));
+    let scales = [[1.0; 3], [1.3, 0.8, 1.5], [0.7; 3]];
+    let cases: Vec<_> = cases.flat_map(|case| scales.map(|scale| (case, scale))).collect();
+    assert_eq!(cases.len(), 144);
+    let one = |&((step, mirror), scale): &((i32, Mirror), [f64; 3])| {
+        let angle = f64::from(15 * step).to_radians();
+        let sign = if mirror == Mirror::None { 1.0 } else { -1.0 };
+        let settings =
+            Settings { angle, mirror, scale, method: Some(Method::Fit), ..Settings::new(tolerance) };
         let result = pasted(&source, &target, 0.42, &settings).unwrap();
         let turn = Matrix3::new(angle.cos(), -angle.sin(), 0.0, angle.sin(), angle.cos(), 0.0, 0.0, 0.0, 1.0)
             * Matrix3::from_diagonal(&Vector3::new(scale[0], sign * scale[1], scale[2]));
         let off = placed_error(&result, &source, &turn);
         let error = result.fit_error.unwrap();
-        assert!(error <= 1e-2);
-        // Between the samples of the fit the error is a little greater.
-        assert!(off <= 2.0 * error + 1e-11, "{step}: {off:.3e} against {error:.3e}");
+        assert!(
+            error <= tolerance && off <= tolerance,
+            "{step} {mirror:?} {scale:?}: {off:.3e}, {error:.3e}"
+        );
+        assert!(off <= 1.005 * error + 1e-11, "{step} {mirror:?} {scale:?}: {off:.3e} against {error:.3e}");
         assert!(outside_is_untouched(&result));
-    }
+    };
+    std::thread::scope(|scope| {
+        for half in cases.chunks(72) {
+            scope.spawn(move || half.iter().for_each(one));
+        }
+    });
 }
 
 #[test]

@@ -72,9 +72,10 @@ pub fn placed_error(result: &Pasted, source: &NurbsSurface, turn: &Matrix3<f64>)
     let (centre, shift) = (Point3::new(2.0, 2.0, 0.0), Vector3::new(4.5, 4.5, 0.0));
     let motion = motion();
     let mut worst = 0.0_f64;
-    for i in 0..=40 {
-        for j in 0..=40 {
-            let x = [f64::from(i) / 40.0, f64::from(j) / 40.0];
+    // Steps that fall on no knot of either surface but the ends.
+    for i in 0..=151 {
+        for j in 0..=151 {
+            let x = [f64::from(i) / 151.0, f64::from(j) / 151.0];
             let ideal = motion.point(&Point3::from(turn * (source.point(x[0], x[1]) - centre) + shift));
             let at = result.map.apply(x);
             let inside = at.iter().all(|c| (0.0..=1.0).contains(c));

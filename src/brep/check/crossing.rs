@@ -1,34 +1,10 @@
-//! Facts: a loop does not cross itself, and the bounds of a face neither cross each other nor lie outside the
-//! outer one.
+//! Where the edges of a face cross in its parameter plane: what two facts are about.
 
-use super::Finding;
 use super::limits::Limits;
 use super::survey::Survey;
-use crate::brep::{Brep, EdgeId, FaceId, LoopId, LoopPoint, ParameterLoop};
-use crate::geometry::{Curve, Surface};
+use crate::brep::{Brep, EdgeId, LoopPoint, ParameterLoop};
+use crate::geometry::Curve;
 use crate::math::Point3;
-
-/// A loop crosses itself.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SelfCrossingLoop {
-    /// The face.
-    pub face: FaceId,
-    /// The loop.
-    pub bound: LoopId,
-    /// Where.
-    pub place: Point3<f64>,
-}
-
-/// Two bounds of a face cross, or an inner one lies outside the outer one.
-#[derive(Debug, Clone, PartialEq)]
-pub struct OverlappingBounds {
-    /// The face.
-    pub face: FaceId,
-    /// One of the loops, an inner one.
-    pub bound: LoopId,
-    /// Where.
-    pub place: Point3<f64>,
-}
 
 /// Pairs of chords that are compared on one face at most; a bound for hostile files.
 const MAX_PAIRS: usize = 1 << 22;
@@ -55,49 +31,45 @@ struct Chord {
     t_end: f64,
 }
 
-/// Looks at the loops of a face.
-pub(super) fn check(
-    survey: &Survey<'_>,
-    face: FaceId,
-    loops: &[ParameterLoop],
-    limits: &Limits,
-    findings: &mut Vec<Finding>,
-) {
+/// A place where edges of one loop, or of two, cross.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Crossing {
+    /// The loops by their index, ascending.
+    pub(super) loops: [usize; 2],
+    pub(super) place: Point3<f64>,
+}
+
+/// Places where the edges of a face cross away from their ends: one for each pair of loops that do.
+pub(super) fn crossings(survey: &Survey<'_>, loops: &[ParameterLoop], limits: &Limits) -> Vec<Crossing> {
     // Where vertices are off their edges, these cross beside them.
     let ends = limits.slight.max(AT_ENDS * limits.tolerance);
     let mut chords: Vec<Chord> =
         loops.iter().enumerate().flat_map(|(of, points)| chords_of(survey, of, points)).collect();
     chords.sort_by(|a, b| a.low().total_cmp(&b.low()));
-    let mut told: Vec<(usize, usize)> = Vec::new();
+    let mut found: Vec<Crossing> = Vec::new();
     let (mut pairs, mut near) = (0, 0);
     for (i, a) in chords.iter().enumerate() {
         for b in chords[i + 1..].iter().take_while(|b| b.low() <= a.high()) {
             pairs += 1;
             if pairs > MAX_PAIRS {
-                return;
-            }
-            let key = (a.of.min(b.of), a.of.max(b.of));
-            if told.contains(&key) || near >= MAX_NEAR {
-                continue;
+                return found;
             }
             let Some(crossing) = chords_cross(survey.brep, a, b) else { continue };
+            let key = [a.of.min(b.of), a.of.max(b.of)];
+            if near >= MAX_NEAR || found.iter().any(|known| known.loops == key) {
+                continue;
+            }
             // Neighbours share an end; what only touches there does not cross.
             if at_end(survey, &crossing, ends) {
                 continue;
             }
             near += 1;
             if let Some(place) = edges_meet(survey, crossing, limits.tolerance, ends) {
-                told.push(key);
-                let bound = loops[key.1].of;
-                findings.push(if key.0 == key.1 {
-                    Finding::SelfCrossingLoop(SelfCrossingLoop { face, bound, place })
-                } else {
-                    Finding::OverlappingBounds(OverlappingBounds { face, bound, place })
-                });
+                found.push(Crossing { loops: key, place });
             }
         }
     }
-    outside(survey.brep, face, loops, &told, findings);
+    found
 }
 
 fn chords_of(survey: &Survey<'_>, of: usize, points: &ParameterLoop) -> Vec<Chord> {
@@ -200,41 +172,4 @@ fn edges_meet(
     let crosses = along_a.cross(&along_b).norm() > ALONG * along_a.norm() * along_b.norm();
     let meet = (p - q).norm() <= tolerance && on_edge(a.0, t) && on_edge(b.0, u);
     (meet && crosses && !at_end).then_some(p)
-}
-
-/// Inner bounds all of whose points lie outside the outer one.
-fn outside(
-    brep: &Brep,
-    face: FaceId,
-    loops: &[ParameterLoop],
-    told: &[(usize, usize)],
-    findings: &mut Vec<Finding>,
-) {
-    let closed = brep.surface_of(face).read().is_none_or(|surface| {
-        matches!(surface, Surface::Sphere { .. }) || matches!(surface.periods(), (Some(_), _) | (_, Some(_)))
-    });
-    let size = |i: &usize| loops[*i].signed_area().map_or(0.0, f64::abs);
-    let biggest = (0..loops.len()).max_by(|a, b| size(a).total_cmp(&size(b)));
-    let Some(outer) = biggest.filter(|_| !closed && loops.iter().all(|l| l.winding == (0.0, 0.0))) else {
-        return;
-    };
-    for (i, bound) in loops.iter().enumerate() {
-        let crosses = told.iter().any(|&(a, b)| a != b && (a == i || b == i));
-        if i == outer || bound.points.is_empty() || crosses {
-            continue;
-        }
-        if !bound.points.iter().any(|p| is_inside(&loops[outer], (p.u, p.v))) {
-            let place = bound.points[0].point;
-            findings.push(Finding::OverlappingBounds(OverlappingBounds { face, bound: bound.of, place }));
-        }
-    }
-}
-
-fn is_inside(polygon: &ParameterLoop, (u, v): (f64, f64)) -> bool {
-    let points = &polygon.points;
-    let crossings = (0..points.len()).filter(|&i| {
-        let (a, b) = (&points[i], &points[(i + 1) % points.len()]);
-        (a.v > v) != (b.v > v) && u < a.u + (v - a.v) / (b.v - a.v) * (b.u - a.u)
-    });
-    crossings.count() % 2 == 1
 }

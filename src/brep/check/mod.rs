@@ -6,32 +6,52 @@
 //! Geometry that was not read is passed over: that it is missing is said elsewhere.
 
 mod crossing;
+mod crowded_edge;
 mod degenerate_edge;
 mod edge_off_surface;
 mod edge_use;
-mod inside_out;
+mod gap;
+mod inconsistent_sense;
 mod limits;
+mod missing_seam;
+mod one_way_edge;
 mod open_loop;
-mod orientation;
+mod open_shell;
+mod overlapping_bounds;
 mod pcurve_off_edge;
+mod reach;
+mod reversed_loop;
+mod self_crossing_loop;
+mod sliver_face;
+mod solid_inside_out;
 mod survey;
+mod turned_face;
 mod vertex_off_edge;
 
 use super::{BodyId, Brep, FaceId, LoopSampling, ParameterLoop, parameter_loops_with};
 use crate::diagnostic::Severity;
 use crate::math::Point3;
-pub use crossing::{OverlappingBounds, SelfCrossingLoop};
-pub use degenerate_edge::{DegenerateEdge, Gap};
+pub use crowded_edge::CrowdedEdge;
+pub use degenerate_edge::DegenerateEdge;
 pub use edge_off_surface::EdgeOffSurface;
-pub use edge_use::{CrowdedEdge, FreeEdge, OneWayEdge, OpenShell, TurnedFace};
-use inside_out::Fan;
-pub use inside_out::{InconsistentSense, MissingSeam, SliverFace, SolidInsideOut};
+use edge_use::Uses;
+pub use gap::Gap;
+pub use inconsistent_sense::InconsistentSense;
 use limits::Limits;
+pub use missing_seam::MissingSeam;
+pub use one_way_edge::OneWayEdge;
 pub use open_loop::OpenLoop;
-pub use orientation::{BoundKind, ReversedLoop};
+pub use open_shell::{FreeEdge, OpenShell};
+pub use overlapping_bounds::OverlappingBounds;
 pub use pcurve_off_edge::PcurveOffEdge;
+pub use reversed_loop::{BoundKind, ReversedLoop};
+pub use self_crossing_loop::SelfCrossingLoop;
+pub use sliver_face::SliverFace;
+use solid_inside_out::Outline;
+pub use solid_inside_out::SolidInsideOut;
 use std::collections::BTreeSet;
 use survey::Survey;
+pub use turned_face::TurnedFace;
 pub use vertex_off_edge::VertexOffEdge;
 
 /// A violated fact.
@@ -71,7 +91,7 @@ pub enum Finding {
     MissingSeam(MissingSeam),
     /// The bounds of a face leave it on the other side than its sense says.
     InconsistentSense(InconsistentSense),
-    /// A solid's shells enclose a negative volume.
+    /// A solid's outer shell encloses a negative volume, or the shell of a void a positive one.
     SolidInsideOut(SolidInsideOut),
 }
 
@@ -169,18 +189,19 @@ pub fn check(brep: &Brep, tolerance: &dyn Fn(BodyId) -> f64) -> Vec<Finding> {
     for (id, body) in brep.bodies.iter() {
         let faces = body.shells.iter().flat_map(|&shell| brep.shells[shell].faces.iter().copied());
         let limits = Limits::new(tolerance(id), survey.extent(faces));
-        let mut fan = Fan::new(brep, id);
         for &shell in &body.shells {
             let faces = &brep.shells[shell].faces;
-            edge_use::check(brep, shell, &mut findings);
+            let uses = Uses::of(brep, shell);
+            check_uses(&uses, &mut findings);
             vertex_off_edge::check(&survey, faces, &limits, &mut findings);
+            let mut outline = Outline::new(brep, shell);
             for &face in faces {
                 let loops = check_face(&survey, face, &limits, &mut findings);
-                fan.add(&loops, brep.shells[shell].forward);
+                outline.add(brep, face, loops);
             }
             degenerate_edge::check(&survey, faces, limits.tolerance, &mut findings);
+            solid_inside_out::check(&survey, &uses, &outline, limits.tolerance, &mut findings);
         }
-        inside_out::check_body(brep, id, &fan, limits.tolerance, &mut findings);
     }
     findings
 }
@@ -199,7 +220,7 @@ pub fn check_faces(brep: &Brep, faces: &BTreeSet<FaceId>, tolerance: &dyn Fn(Bod
                 continue;
             }
             let limits = Limits::new(tolerance(id), survey.extent(some.iter().copied()));
-            edge_use::check(brep, shell, &mut findings);
+            check_uses(&Uses::of(brep, shell), &mut findings);
             vertex_off_edge::check(&survey, &some, &limits, &mut findings);
             for &face in &some {
                 check_face(&survey, face, &limits, &mut findings);
@@ -210,22 +231,35 @@ pub fn check_faces(brep: &Brep, faces: &BTreeSet<FaceId>, tolerance: &dyn Fn(Bod
     findings
 }
 
-/// Checks one face: its loops, and the edges on its surface. Gives the loops.
+/// Checks how the faces of a shell share their edges.
+fn check_uses(uses: &Uses<'_>, findings: &mut Vec<Finding>) {
+    turned_face::check(uses, findings);
+    open_shell::check(uses, findings);
+    one_way_edge::check(uses, findings);
+    crowded_edge::check(uses, findings);
+}
+
+/// Checks one face: its loops, and the edges on its surface. Gives the loops, where they are known.
 fn check_face(
     survey: &Survey<'_>,
     face: FaceId,
     limits: &Limits,
     findings: &mut Vec<Finding>,
-) -> Vec<ParameterLoop> {
+) -> Option<Vec<ParameterLoop>> {
     let (brep, tolerance) = (survey.brep, limits.tolerance);
     open_loop::check(brep, face, tolerance, findings);
     pcurve_off_edge::check(survey, face, limits, findings);
     let sampling = LoopSampling::of_tolerance(tolerance);
-    let loops = parameter_loops_with(brep, face, &sampling, &|edge| survey.points(edge)).unwrap_or_default();
-    edge_off_surface::check(face, &loops, limits, findings);
-    orientation::check(brep, face, &loops, findings);
-    degenerate_edge::gaps(survey, face, limits, findings);
-    crossing::check(survey, face, &loops, limits, findings);
-    inside_out::check_face(brep, face, &loops, tolerance, findings);
-    loops
+    let found = parameter_loops_with(brep, face, &sampling, &|edge| survey.points(edge)).ok();
+    let loops = found.as_deref().unwrap_or_default();
+    edge_off_surface::check(face, loops, limits, findings);
+    reversed_loop::check(brep, face, loops, findings);
+    gap::check(survey, face, limits, findings);
+    let crossings = crossing::crossings(survey, loops, limits);
+    self_crossing_loop::check(face, loops, &crossings, findings);
+    overlapping_bounds::check(brep, face, loops, &crossings, findings);
+    inconsistent_sense::check(brep, face, loops, findings);
+    missing_seam::check(brep, face, loops, tolerance, findings);
+    sliver_face::check(brep, face, loops, tolerance, findings);
+    found
 }

@@ -3,6 +3,7 @@
 use crate::brep::edge_samples::sample_curve;
 use crate::brep::{Arena, Brep, EdgeId, EdgePoint, EdgeRange, EdgeSampling, FaceId, edge_range};
 use crate::math::BoundingBox;
+use std::borrow::Cow;
 use std::cell::OnceCell;
 
 /// An edge as its curve has it.
@@ -50,7 +51,7 @@ impl<'a> Survey<'a> {
     }
 
     /// Points along an edge.
-    pub(super) fn points(&self, edge: EdgeId) -> Option<Vec<EdgePoint>> {
-        self.edge(edge).map(|sampled| sampled.points.clone())
+    pub(super) fn points(&self, edge: EdgeId) -> Option<Cow<'_, [EdgePoint]>> {
+        self.edge(edge).map(|sampled| Cow::Borrowed(sampled.points.as_slice()))
     }
 }

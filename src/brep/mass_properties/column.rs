@@ -1,5 +1,7 @@
 //! Integrals along one parameter of a surface, the other held: what the boundary integral is taken of.
 
+use super::Quadrature;
+use super::adaptive::Accuracy;
 use super::moments::Sums;
 use crate::brep::inner_breaks;
 use crate::geometry::{Curve, Repetition, Surface};
@@ -19,6 +21,10 @@ const BEYOND: usize = 3;
 const RATIONAL: usize = 3;
 /// Greatest count of points for one span.
 const MAX_POINTS: usize = 16;
+/// Columns that tell how finely a surface has to be cut.
+const PROBES: usize = 5;
+/// Parts of one piece at most.
+const MAX_PARTS: usize = 32;
 /// Greatest count of pieces of one column; a bound for hostile files.
 const MAX_PIECES: usize = 1 << 14;
 
@@ -48,6 +54,8 @@ pub(super) struct Column<'a> {
     /// Where the surface repeats itself; none for kinds that take any parameter.
     repetition: Option<Repetition>,
     pieces: usize,
+    /// Even parts that each piece between breaks is cut into.
+    parts: usize,
 }
 
 impl Along {
@@ -61,8 +69,13 @@ impl Along {
 }
 
 impl<'a> Column<'a> {
-    pub(super) fn new(surface: &'a Surface, along: Along, reference: Point3<f64>, pieces: usize) -> Self {
-        let points = points_of(surface, along);
+    pub(super) fn new(
+        surface: &'a Surface,
+        along: Along,
+        reference: Point3<f64>,
+        quadrature: &Quadrature,
+    ) -> Self {
+        let points = points_of(surface, along).min(quadrature.points);
         let rule = |n: usize| {
             let (x, w) = gauss_legendre(n);
             x.into_iter().zip(w).collect::<Vec<_>>()
@@ -82,10 +95,24 @@ impl<'a> Column<'a> {
         );
         let repetition = (!endless).then(|| surface.repetition());
         let breaks = breaks(surface, along);
-        let points_across = points_of(surface, along.other());
+        let points_across = points_of(surface, along.other()).min(quadrature.points);
         let across = (rule(points_across), rule(points_across.saturating_sub(2).max(1)));
         let fine = rule(points);
-        Self { surface, along, reference, fine, coarse, across, breaks, period, repetition, pieces }
+        let pieces = quadrature.pieces;
+        Self { surface, along, reference, fine, coarse, across, breaks, period, repetition, pieces, parts: 1 }
+    }
+
+    /// Cuts pieces into parts until the rules are at one over a rectangle, as far as some columns in it tell.
+    pub(super) fn cut_finely(&mut self, across: (f64, f64), along: (f64, f64), accuracy: &Accuracy) {
+        let width = across.1 - across.0;
+        let off = |column: &Self| {
+            let places = (0..PROBES).map(|i| across.0 + width * ((i as f64 + 0.5) / PROBES as f64));
+            let errors = places.map(|at| column.error(at, along.0, along.1) * width);
+            errors.map(|error| error.relative(accuracy.size, accuracy.reach)).fold(0.0, f64::max)
+        };
+        while self.parts < MAX_PARTS && off(self) > accuracy.target {
+            self.parts *= 2;
+        }
     }
 
     /// The integral over a rectangle between lines, and how far coarser rules are off there.
@@ -106,16 +133,36 @@ impl<'a> Column<'a> {
     ) -> (Sums, Sums) {
         let (middle_a, half_a) = (0.5 * (across.0 + across.1), 0.5 * (across.1 - across.0));
         let (middle_b, half_b) = (0.5 * (along.0 + along.1), 0.5 * (along.1 - along.0));
+        let at = |rule: &[(f64, f64)], middle: f64, half: f64| -> Vec<f64> {
+            rule.iter().map(|&(x, _)| middle + half * x).collect()
+        };
+        let values =
+            self.elements(&at(rule_across, middle_a, half_a), &at(rule_along, middle_b, half_b)).into_iter();
+        let weights = rule_across
+            .iter()
+            .flat_map(|&(_, x)| rule_along.iter().map(move |&(_, y)| x * y * half_a * half_b));
         let (mut sum, mut size) = (Sums::ZERO, Sums::ZERO);
-        for &(x, weight_x) in rule_across {
-            for &(y, weight_y) in rule_along {
-                let value = self.element(middle_a + half_a * x, middle_b + half_b * y);
-                let weight = weight_x * weight_y * half_a * half_b;
-                sum += value * weight;
-                size += value.abs() * weight.abs();
-            }
+        for (value, weight) in values.zip(weights) {
+            sum += value * weight;
+            size += value.abs() * weight.abs();
         }
         (sum, size)
+    }
+
+    /// As [`element`](Self::element) over a grid, the values along a column together.
+    fn elements(&self, across: &[f64], along: &[f64]) -> Vec<Sums> {
+        let places = || (0..across.len()).flat_map(|a| (0..along.len()).map(move |b| (a, b)));
+        let Surface::Nurbs(nurbs) = self.surface else {
+            return places().map(|(a, b)| self.element(across[a], along[b])).collect();
+        };
+        let v_columns = self.along == Along::V;
+        let (us, vs) = if v_columns { (across, along) } else { (along, across) };
+        let us: Vec<f64> = us.iter().map(|&u| self.surface.wrapped(u, vs[0]).0).collect();
+        let vs: Vec<f64> = vs.iter().map(|&v| self.surface.wrapped(us[0], v).1).collect();
+        let places: Vec<[usize; 2]> =
+            places().map(|(a, b)| if v_columns { [a, b] } else { [b, a] }).collect();
+        let tangents = nurbs.grid_tangents(&us, &vs, &places).into_iter();
+        tangents.map(|(point, du, dv)| Sums::at(&(point - self.reference), &du.cross(&dv))).collect()
     }
 
     /// Point, seen from the reference, and `du × dv`.
@@ -156,8 +203,9 @@ impl<'a> Column<'a> {
         stops.extend(between(&self.breaks, self.period, low, high));
         stops.push(high);
         for &end in &super::thinned(&stops, self.pieces)[1..] {
-            let (middle, half) = (0.5 * (start + end), 0.5 * (end - start));
-            if half > 0.0 {
+            let half = 0.5 * (end - start) / self.parts as f64;
+            for part in (0..self.parts).filter(|_| half > 0.0) {
+                let middle = start + half * (2 * part + 1) as f64;
                 for &(x, weight) in rule {
                     sum += self.element(at, middle + half * x) * (weight * half * sign);
                 }

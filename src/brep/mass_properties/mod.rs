@@ -17,7 +17,8 @@ mod path;
 mod tests;
 
 use super::{
-    BodyId, Brep, EdgeId, FaceId, LoopSampling, ParameterLoop, ParameterLoopError, ShellId, parameter_loops,
+    BodyId, Brep, EdgeId, FaceId, LoopPoint, LoopSampling, ParameterLoop, ParameterLoopError, ShellId,
+    parameter_loops,
 };
 use crate::geometry::Surface;
 use crate::math::{BoundingBox, Point3};
@@ -27,6 +28,7 @@ use column::{Along, Column, between, breaks};
 pub use moments::MassProperties;
 use moments::Sums;
 use path::{Foot, Path, Pick, Place, paths};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// Why something has no mass properties.
@@ -63,6 +65,19 @@ pub struct Quadrature {
     pub target: f64,
     /// Pieces between knots that a column, or an edge, is cut into at most: beyond, knots are passed over.
     pub pieces: usize,
+    /// Points of one piece of a column at most.
+    pub points: usize,
+    /// Where an edge is between the points of its loop.
+    pub between: Between,
+}
+
+/// Where an edge is in the parameter plane between the points of its loop, whose places are known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Between {
+    /// Where the points of its curve are projected to.
+    Feet,
+    /// On cubics through the places: no projection, and off by some millionths of a quarter of a turn.
+    Cubics,
 }
 
 impl Quadrature {
@@ -72,19 +87,26 @@ impl Quadrature {
     /// As exactly as makes sense, for a file of the given uncertainty.
     #[must_use]
     pub fn exact(tolerance: f64) -> Self {
-        Self { tolerance, target: Self::EXACT, pieces: usize::MAX }
+        Self { target: Self::EXACT, ..Self::good(tolerance) }
     }
 
     /// Good to a millionth or better, where surfaces are smooth between their knots.
     #[must_use]
     pub fn good(tolerance: f64) -> Self {
-        Self { tolerance, target: 1e-8, pieces: usize::MAX }
+        let (pieces, points) = (usize::MAX, usize::MAX);
+        Self { tolerance, target: 1e-8, pieces, points, between: Between::Feet }
     }
 
-    /// Good to some parts in a hundred, at a small part of the cost: to tell a sign.
+    /// Good to some parts in a hundred, at a small part of the cost.
     #[must_use]
     pub fn rough(tolerance: f64) -> Self {
-        Self { tolerance, target: 1e-3, pieces: 6 }
+        Self { target: 1e-3, pieces: 6, ..Self::good(tolerance) }
+    }
+
+    /// As rough as may be to tell the sign of a volume, without a projection.
+    #[must_use]
+    pub fn of_sign(tolerance: f64) -> Self {
+        Self { points: 4, between: Between::Cubics, ..Self::rough(tolerance) }
     }
 }
 
@@ -120,11 +142,29 @@ pub fn of_shell(
     quadrature: &Quadrature,
     reference: Point3<f64>,
 ) -> Result<MassProperties, MassPropertiesError> {
+    let sampling = LoopSampling::of_tolerance(quadrature.tolerance);
+    let loops = |face| parameter_loops(brep, face, &sampling).map(Cow::Owned);
+    of_shell_with(brep, shell, quadrature, reference, &loops)
+}
+
+/// Loops of a face in its parameter plane, or why there are none.
+pub type LoopsOf<'f, 'l> = dyn Fn(FaceId) -> Result<Cow<'l, [ParameterLoop]>, ParameterLoopError> + 'f;
+
+/// As [`of_shell`], with the loops given.
+///
+/// # Errors
+/// See [`MassPropertiesError`].
+pub fn of_shell_with(
+    brep: &Brep,
+    shell: ShellId,
+    quadrature: &Quadrature,
+    reference: Point3<f64>,
+    loops: &LoopsOf<'_, '_>,
+) -> Result<MassProperties, MassPropertiesError> {
     let mut sum = MassProperties::none(reference);
     let uses = uses(brep, shell);
     for &face in &brep.shells[shell].faces {
-        let loops = parameter_loops(brep, face, &LoopSampling::of_tolerance(quadrature.tolerance))
-            .map_err(|source| MassPropertiesError::Loops { face, source })?;
+        let loops = loops(face).map_err(|source| MassPropertiesError::Loops { face, source })?;
         let side = side(brep, face, &uses);
         sum += within(brep, face, &loops, quadrature, reference, side)?;
     }
@@ -181,10 +221,11 @@ fn uses(brep: &Brep, shell: ShellId) -> BTreeMap<EdgeId, [usize; 2]> {
     uses
 }
 
-/// Whether every edge of a face has a neighbour that runs against it.
+/// Whether every edge of a face has a neighbour, another face, that runs against it.
 fn side(brep: &Brep, face: FaceId, uses: &BTreeMap<EdgeId, [usize; 2]>) -> Side {
     let mut edges = brep.coedges_of(face).map(|coedge| brep.coedges[coedge].edge).peekable();
-    let paired = edges.peek().is_some() && edges.all(|edge| uses.get(&edge) == Some(&[1, 1]));
+    let outer = edges.peek().is_some() && !brep.bounds_are_seams(face);
+    let paired = outer && edges.all(|edge| uses.get(&edge) == Some(&[1, 1]));
     if paired { Side::OfBounds } else { Side::OfSense }
 }
 
@@ -206,14 +247,14 @@ fn within(
     let (mut sums, mut errors) = (Sums::ZERO, Sums::ZERO);
     if bounded {
         let foot = Foot::new(surface);
-        let boundary: Vec<Path<'_>> =
-            loops.iter().flat_map(|l| paths(brep, &foot, l, quadrature.tolerance)).collect();
+        let boundary: Vec<Path<'_>> = loops.iter().flat_map(|l| paths(brep, &foot, l, quadrature)).collect();
         let base = region.base(loops, &boundary, sign)?;
         (sums, errors) = region.around(&foot, &boundary, base);
         // The paths run with the face to their left against the face's normal.
         sums = sums.turned(sign, 1.0);
     }
-    if !bounded || (sums.0[0] < -errors.0[0] && is_closed(surface)) {
+    let outside = || sums.0[0] < -errors.0[0] && is_closed(surface) && !brep.bounds_are_seams(face);
+    if !bounded || outside() {
         let (whole, error) = region.whole()?;
         sums += whole.turned(1.0, sign);
         errors += error;
@@ -309,34 +350,18 @@ impl<'a> Region<'a> {
             (false, true) => Along::U,
             _ => Along::V,
         };
-        let mut bounds: Option<BoundingBox> = None;
-        let mut reach = 0.0f64;
-        let mut take = |point: Point3<f64>| {
-            reach = reach.max((point - reference).norm());
-            bounds.get_or_insert(BoundingBox { min: point, max: point }).include(&point);
-        };
-        let mut sampled = false;
-        for point in loops.iter().flat_map(|l| &l.points) {
-            take(point.point);
-            sampled = true;
-        }
-        let ((u0, u1), (v0, v1)) = surface.domain();
-        if !sampled && [u0, u1, v0, v1].iter().all(|x| x.is_finite()) {
-            for i in 0..=SAMPLES * SAMPLES {
-                let (a, b) = (i % (SAMPLES + 1), i / (SAMPLES + 1));
-                let part = |k: usize| k as f64 / SAMPLES as f64;
-                take(surface.point(u0 + (u1 - u0) * part(a), v0 + (v1 - v0) * part(b)));
+        let (size, reach) = size_and_reach(surface, loops, &reference);
+        let accuracy = Accuracy { size, reach: reach.max(size), target: quadrature.target };
+        let mut column = Column::new(surface, along, reference, quadrature);
+        // A rough measure skips knots: finer pieces are not what it lacks.
+        if quadrature.pieces == usize::MAX {
+            let (u, v) = ranges(surface, loops);
+            let (across, along) = if along == Along::V { (u, v) } else { (v, u) };
+            if [across.0, across.1, along.0, along.1].iter().all(|x| x.is_finite()) {
+                column.cut_finely(across, along, &accuracy);
             }
         }
-        let size = bounds.map_or(0.0, |b| b.diagonal());
-        let accuracy = Accuracy { size, reach: reach.max(size), target: quadrature.target };
-        Ok(Self {
-            surface,
-            face,
-            column: Column::new(surface, along, reference, quadrature.pieces),
-            accuracy,
-            pieces: quadrature.pieces,
-        })
+        Ok(Self { surface, face, column, accuracy, pieces: quadrature.pieces })
     }
 
     /// Where the columns begin: at a pole where there is one, at the side that the loops leave open, else in the
@@ -374,8 +399,8 @@ impl<'a> Region<'a> {
     }
 
     fn open_side(&self, upper: bool) -> Result<f64, MassPropertiesError> {
-        if let Surface::Cone { radius, semi_angle, .. } = self.surface {
-            return Ok(-radius / semi_angle.tan());
+        if let Some(apex) = self.surface.apex() {
+            return Ok(apex);
         }
         let (us, vs) = self.surface.domain();
         let (low, high) = if self.column.along == Along::V { vs } else { us };
@@ -532,6 +557,32 @@ impl<'a> Region<'a> {
         };
         Ok(self.around(&foot, &[path], base))
     }
+}
+
+/// Diagonal of the box of some loops, and their greatest distance from a point; of a few points of the surface where
+/// there are no loops.
+fn size_and_reach(surface: &Surface, loops: &[ParameterLoop], from: &Point3<f64>) -> (f64, f64) {
+    let mut points: Vec<Point3<f64>> = loops.iter().flat_map(|l| &l.points).map(|p| p.point).collect();
+    let ((u0, u1), (v0, v1)) = surface.domain();
+    if points.is_empty() && [u0, u1, v0, v1].iter().all(|x| x.is_finite()) {
+        let part = |k: usize| k as f64 / SAMPLES as f64;
+        let at = |i: usize, j: usize| surface.point(u0 + (u1 - u0) * part(i), v0 + (v1 - v0) * part(j));
+        points =
+            (0..=SAMPLES).flat_map(|i| (0..=SAMPLES).map(move |j| (i, j))).map(|(i, j)| at(i, j)).collect();
+    }
+    let reach = points.iter().map(|point| (point - from).norm()).fold(0.0, f64::max);
+    (BoundingBox::of(&points).diagonal(), reach)
+}
+
+/// Least and greatest parameters of some loops; of the surface where there are none.
+fn ranges(surface: &Surface, loops: &[ParameterLoop]) -> ((f64, f64), (f64, f64)) {
+    let range = |value: fn(&LoopPoint) -> f64, domain: (f64, f64)| {
+        let values = || loops.iter().flat_map(|l| &l.points).map(value);
+        let low = values().fold(f64::INFINITY, f64::min);
+        if low.is_finite() { (low, values().fold(f64::NEG_INFINITY, f64::max)) } else { domain }
+    };
+    let (us, vs) = surface.domain();
+    (range(|p| p.u, us), range(|p| p.v, vs))
 }
 
 /// At most so many intervals between some ascending or descending values, the first and last kept.

@@ -1,6 +1,7 @@
 //! The boundary of a face as paths in the parameter plane: along coedges, and straight from one to the next.
 
-use crate::brep::{Brep, CoedgeId, LoopPoint, ParameterLoop, edge_range, inner_breaks};
+use super::{Between, Quadrature};
+use crate::brep::{Brep, LoopPoint, ParameterLoop, edge_range, inner_breaks};
 use crate::geometry::nurbs::Wrap;
 use crate::geometry::parameters::unwrapped;
 use crate::geometry::{Curve, Surface};
@@ -30,6 +31,7 @@ pub(super) struct EdgePath<'a> {
     places: Vec<(f64, Place)>,
     /// Distance from the surface beyond which a projection is not believed.
     lost: f64,
+    between: Between,
 }
 
 /// Finds parameters of points near given ones.
@@ -48,6 +50,8 @@ const HELD: f64 = 1e-6;
 const CROSSING_STEPS: usize = 40;
 /// Part of an edge's range within which a crossing is found, and two breaks are one.
 const CROSSING: f64 = 1e-10;
+/// Ratio of the steps between places above which the path is broken.
+const CLOSER: f64 = 1.5;
 /// Factor on the greatest gap of a loop beyond which a projection went astray.
 const ASTRAY: f64 = 10.0;
 
@@ -127,8 +131,36 @@ impl EdgePath<'_> {
         (a.0 + (b.0 - a.0) * part, a.1 + (b.1 - a.1) * part)
     }
 
+    /// On the cubic through the four known places about `t`, and how it moves with `t`.
+    fn on_cubic(&self, t: f64) -> (Place, Place) {
+        let up = self.range().0 <= self.range().1;
+        let after = self.places.partition_point(|&(s, _)| if up { s <= t } else { s >= t });
+        let count = self.places.len().min(4);
+        let first = after.saturating_sub(2).min(self.places.len() - count);
+        let near = &self.places[first..first + count];
+        // Newton's differences, in both parameters at once; then Horner's scheme with its derivative.
+        let mut differences: Vec<Place> = near.iter().map(|&(_, place)| place).collect();
+        for order in 1..count {
+            for i in (order..count).rev() {
+                let step = near[i].0 - near[i - order].0;
+                let (a, b) = (differences[i - 1], differences[i]);
+                differences[i] = ((b.0 - a.0) / step, (b.1 - a.1) / step);
+            }
+        }
+        let (mut place, mut speed) = (differences[count - 1], (0.0, 0.0));
+        for i in (0..count - 1).rev() {
+            let away = t - near[i].0;
+            speed = (speed.0 * away + place.0, speed.1 * away + place.1);
+            place = (place.0 * away + differences[i].0, place.1 * away + differences[i].1);
+        }
+        (place, speed)
+    }
+
     /// The place of the curve's point.
     fn place(&self, foot: &Foot<'_>, t: f64) -> Place {
+        if self.between == Between::Cubics {
+            return self.on_cubic(t).0;
+        }
         let guess = self.guess(t);
         let point = self.curve.point_wrapped(t);
         let found = foot.of(&point, guess);
@@ -143,6 +175,9 @@ impl EdgePath<'_> {
     /// The foot of a point off the surface moves by the Hessian of the distance, not by the metric alone; at a
     /// border that holds it, along the border.
     pub(super) fn place_and_speed(&self, foot: &Foot<'_>, t: f64) -> (Place, Place) {
+        if self.between == Between::Cubics {
+            return self.on_cubic(t);
+        }
         let place = self.place(foot, t);
         let (u, v) = foot.surface_place(place);
         let d = foot.surface.derivatives(u, v);
@@ -184,6 +219,13 @@ impl EdgePath<'_> {
         let (first, last) = self.range();
         let (low, high) = (first.min(last), first.max(last));
         let mut breaks = inner_breaks(self.curve, low, high);
+        // Places stand closer where the path turns quickly, as beside a pole.
+        for near in self.places.windows(3) {
+            let (before, after) = ((near[1].0 - near[0].0).abs(), (near[2].0 - near[1].0).abs());
+            if before.max(after) > CLOSER * before.min(after) {
+                breaks.push(near[1].0);
+            }
+        }
         for (pick, lines) in lines {
             for pair in self.places.windows(2) {
                 let (x, y) = (pick(pair[0].1), pick(pair[1].1));
@@ -249,16 +291,22 @@ pub(super) fn paths<'a>(
     brep: &'a Brep,
     foot: &Foot<'_>,
     of: &ParameterLoop,
-    tolerance: f64,
+    quadrature: &Quadrature,
 ) -> Vec<Path<'a>> {
+    let lost = ASTRAY * of.gap.max(quadrature.tolerance);
     let mut paths: Vec<Path<'a>> = Vec::new();
     let (mut start, mut here): (Option<Place>, Option<Place>) = (None, None);
-    for points in of.points.chunk_by(|a, b| a.coedge == b.coedge) {
-        let Some(edge) = edge_path(brep, foot, points, ASTRAY * of.gap.max(tolerance)) else { continue };
-        start = start.or(Some(edge.first()));
-        paths.extend(here.and_then(|from| straight(from, edge.first())));
-        here = Some(edge.last());
-        paths.push(Path::Edge(edge));
+    for of_coedge in of.points.chunk_by(|a, b| a.coedge == b.coedge) {
+        // Where an edge passes through a pole, it stands there twice.
+        let mut pieces = of_coedge.chunk_by(|a, b| a.t != b.t).peekable();
+        while let Some(points) = pieces.next() {
+            let end = end_of(brep, of_coedge).filter(|_| pieces.peek().is_none());
+            let Some(edge) = edge_path(brep, foot, points, end, (lost, quadrature.between)) else { continue };
+            start = start.or(Some(edge.first()));
+            paths.extend(here.and_then(|from| straight(from, edge.first())));
+            here = Some(edge.last());
+            paths.push(Path::Edge(edge));
+        }
     }
     if let (Some(from), Some(start)) = (here, start) {
         paths.extend(straight(from, (start.0 + of.winding.0, start.1 + of.winding.1)));
@@ -270,24 +318,26 @@ fn straight<'a>(from: Place, to: Place) -> Option<Path<'a>> {
     (from != to).then_some(Path::Straight(from, to))
 }
 
-fn edge_path<'a>(brep: &'a Brep, foot: &Foot<'_>, points: &[LoopPoint], lost: f64) -> Option<EdgePath<'a>> {
-    let coedge: CoedgeId = points[0].coedge;
-    let edge = brep.coedges[coedge].edge;
-    let curve = brep.curve_of(edge).read()?;
-    let range = edge_range(brep, edge)?;
+/// Parameter at which a coedge ends: its last point is the first of the next one, by that one's parameter.
+fn end_of(brep: &Brep, points: &[LoopPoint]) -> Option<f64> {
+    let range = edge_range(brep, brep.coedges[points[0].coedge].edge)?;
+    let from = points[0].t;
+    Some(if (from - range.start).abs() <= (from - range.end).abs() { range.end } else { range.start })
+}
+
+fn edge_path<'a>(
+    brep: &'a Brep,
+    foot: &Foot<'_>,
+    points: &[LoopPoint],
+    end: Option<f64>,
+    (lost, between): (f64, Between),
+) -> Option<EdgePath<'a>> {
+    let curve = brep.curve_of(brep.coedges[points[0].coedge].edge).read()?;
     let mut places: Vec<(f64, Place)> = points.iter().map(|p| (p.t, (p.u, p.v))).collect();
-    // The last point of a coedge is the first of the next one, by that one's parameter.
-    let end = {
-        let from = places[0].0;
-        if (from - range.start).abs() <= (from - range.end).abs() { range.end } else { range.start }
-    };
-    if places[places.len() - 1].0 != end {
-        let near = EdgePath { curve, places, lost };
-        let seed = near.last();
-        let found = foot.of(&curve.point_wrapped(end), seed);
-        let found = if found.0.is_finite() && found.1.is_finite() { found } else { seed };
-        places = near.places;
-        places.push((end, found));
+    let last = places[places.len() - 1];
+    if let Some(end) = end.filter(|&end| end != last.0) {
+        let found = foot.of(&curve.point_wrapped(end), last.1);
+        places.push((end, if found.0.is_finite() && found.1.is_finite() { found } else { last.1 }));
     }
-    (places.len() >= 2).then_some(EdgePath { curve, places, lost })
+    (places.len() >= 2).then_some(EdgePath { curve, places, lost, between })
 }

@@ -1,11 +1,17 @@
 use super::*;
 use crate::brep::{Body, BodyKind, Coedge, CurveId, Edge, EdgeId, Face, Loop, Shell, Vertex, VertexId};
-use crate::geometry::nurbs::{KnotVector, NurbsSurface};
+use crate::geometry::nurbs::{KnotVector, NurbsCurve3, NurbsSurface};
 use crate::geometry::{Carried, Curve};
 use crate::math::{Frame, Matrix3, Vector3};
-use std::f64::consts::{PI, SQRT_2};
+use std::f64::consts::{PI, SQRT_2, TAU};
 
-const EXACT: Quadrature = Quadrature { tolerance: 1e-6, target: Quadrature::EXACT, pieces: usize::MAX };
+const EXACT: Quadrature = Quadrature {
+    tolerance: 1e-6,
+    target: Quadrature::EXACT,
+    pieces: usize::MAX,
+    points: usize::MAX,
+    between: Between::Feet,
+};
 
 /// Builds one solid face by face.
 struct Builder {
@@ -66,6 +72,8 @@ impl Builder {
     /// Area, volume, height of the centroid and inertia about the axes against closed forms.
     fn assert(&self, area: f64, volume: f64, height: f64, inertia: [f64; 3]) {
         let found = of_body(&self.brep, self.body, &EXACT).expect("it is measured");
+        let rough = of_body(&self.brep, self.body, &Quadrature::of_sign(1e-6)).expect("it is measured");
+        assert!((rough.volume() - volume).abs() < 0.01 * volume.abs(), "{} {volume}", rough.volume());
         let near = |found: f64, expected: f64, what: &str| {
             let off = (found - expected).abs();
             assert!(off <= 1e-8 * expected.abs().max(1.0), "{what}: {found}, expected {expected}");
@@ -259,4 +267,86 @@ fn a_bound_round_an_endless_cylinder_is_refused() {
     let bottom = b.circle(0.0, 1.0);
     let face = b.face(Surface::Cylinder { frame: upright(0.0), radius: 1.0 }, true, &[&[(bottom, true)]]);
     assert_eq!(of_face(&b.brep, face, &EXACT, Point3::origin()), Err(MassPropertiesError::Endless { face }));
+}
+
+#[test]
+fn a_wavy_profile_turned_is_measured_as_pappus_says() {
+    // Radius 4 + 3 t (1 - t) (1 - 2 t) · 8 and height 12 t: one span of a cubic that waves.
+    let points = [(4.0, 0.0), (12.0, 4.0), (-4.0, 8.0), (4.0, 12.0)].map(|(x, z)| Point3::new(x, 0.0, z));
+    let knots = KnotVector::clamped_uniform(3, 1, 0.0, 1.0).expect("knots");
+    let profile = NurbsCurve3::from_points(knots, &points, None).expect("a curve");
+    let mut b = Builder::new();
+    let (low, high) = (b.circle(0.0, 4.0), b.circle(12.0, 4.0));
+    let side = Surface::Revolution { curve: Box::new(Curve::Nurbs(profile.clone())), frame: upright(0.0) };
+    b.face(side, true, &[&[(low, true)], &[(high, false)]]);
+    let face = b.brep.faces.ids().next().expect("a face");
+    let found = of_face(&b.brep, face, &EXACT, Point3::origin()).expect("it is measured");
+    // Simpson's rule over the profile, in parts so fine that it is exact to rounding.
+    let term = |t: f64| TAU * profile.point_at(t).x * profile.derivatives(t)[1].norm();
+    let parts = 20_000u32;
+    let step = 1.0 / f64::from(parts);
+    let area: f64 = (0..parts)
+        .map(|k| f64::from(k) * step)
+        .map(|t| (term(t) + 4.0 * term(t + 0.5 * step) + term(t + step)) * step / 6.0)
+        .sum();
+    assert!((found.area() - area).abs() < 1e-9 * area, "{} {area}", found.area());
+}
+
+#[test]
+fn half_a_sphere_is_bounded_by_a_circle_through_its_poles_or_beside_them() {
+    let radius = 5.0;
+    for tilt in [0.0, 1e-4, -1e-3, 0.3] {
+        let mut b = Builder::new();
+        let at = b.vertex(0.0, radius * 0.6, radius * 0.8);
+        let x = Vector3::new(0.0, 0.6, 0.8);
+        let cut = Frame::from_axis(Point3::origin(), Vector3::x(), Some(x)).expect("a frame");
+        let circle = b.edge(Curve::Circle { frame: cut, radius }, at, at);
+        let axis = Vector3::new(tilt, 0.5 * tilt, 1.0);
+        let frame = Frame::from_axis(Point3::origin(), axis, Some(Vector3::x())).expect("a frame");
+        b.face(Surface::Sphere { frame, radius }, true, &[&[(circle, true)]]);
+        let back = Frame::from_axis(Point3::origin(), -Vector3::x(), None).expect("a frame");
+        b.face(Surface::Plane(back), true, &[&[(circle, false)]]);
+        let found = of_body(&b.brep, b.body, &EXACT).expect("it is measured");
+        let (area, volume) = (3.0 * PI * radius * radius, 2.0 / 3.0 * PI * radius.powi(3));
+        assert!((found.area() - area).abs() < 1e-9 * area, "{tilt}: {} {area}", found.area());
+        assert!((found.volume() - volume).abs() < 1e-9 * volume, "{tilt}: {} {volume}", found.volume());
+    }
+}
+
+#[test]
+fn lunes_of_a_sphere_narrow_and_wide() {
+    for angle in [0.01, 1.0, PI, 4.5] {
+        let mut b = Builder::new();
+        let (south, north) = (b.vertex(0.0, 0.0, -3.0), b.vertex(0.0, 0.0, 3.0));
+        let mut meridian = |u: f64| {
+            let out = Vector3::new(u.cos(), u.sin(), 0.0);
+            let frame = Frame::from_axis(Point3::origin(), out.cross(&Vector3::z()), Some(-Vector3::z()));
+            b.edge(Curve::Circle { frame: frame.expect("a frame"), radius: 3.0 }, south, north)
+        };
+        let (first, last) = (meridian(0.2), meridian(0.2 + angle));
+        let sphere = Surface::Sphere { frame: upright(0.0), radius: 3.0 };
+        let face = b.face(sphere, true, &[&[(last, true), (first, false)]]);
+        let found = of_face(&b.brep, face, &EXACT, Point3::origin()).expect("it is measured");
+        let area = 2.0 * angle * 9.0;
+        assert!((found.area() - area).abs() < 1e-9 * area, "{angle}: {} {area}", found.area());
+    }
+}
+
+#[test]
+fn a_torus_cut_open_along_both_its_circles_is_whole_whichever_way_it_is_walked_round() {
+    let (major, minor) = (4.0, 1.0);
+    for turned in [false, true] {
+        let mut b = Builder::new();
+        let round = b.circle(0.0, major + minor);
+        let at = b.brep.edges[round].start;
+        let tube = Frame::from_axis(Point3::new(major, 0.0, 0.0), -Vector3::y(), Some(Vector3::x()));
+        let tube = b.edge(Curve::Circle { frame: tube.expect("a frame"), radius: minor }, at, at);
+        let (first, second) = if turned { (tube, round) } else { (round, tube) };
+        let torus = Surface::Torus { frame: upright(0.0), major_radius: major, minor_radius: minor };
+        b.face(torus, true, &[&[(first, true), (second, true), (first, false), (second, false)]]);
+        let found = of_body(&b.brep, b.body, &EXACT).expect("it is measured");
+        let (area, volume) = (4.0 * PI * PI * major * minor, 2.0 * PI * PI * major * minor * minor);
+        assert!((found.area() - area).abs() < 1e-9 * area, "{turned}: {} {area}", found.area());
+        assert!((found.volume() - volume).abs() < 1e-9 * volume, "{turned}: {} {volume}", found.volume());
+    }
 }

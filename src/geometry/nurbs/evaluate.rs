@@ -63,8 +63,16 @@ impl<const H: usize> NurbsCurve<H> {
         self.knots().domain()
     }
 
+    /// Homogeneous point and derivatives up to `order`, at most 2.
+    fn homogeneous_at(&self, t: f64, order: usize) -> [[f64; H]; 3] {
+        if self.knots().degree() < USUAL {
+            return self.homogeneous(&self.knots().basis_in_room::<USUAL>(t, order), order);
+        }
+        self.homogeneous(&self.knots().basis_derivatives(t, order), order)
+    }
+
     /// Homogeneous point and derivatives up to `order`, at most 2, by a given basis.
-    fn homogeneous(&self, basis: &LocalBasis, order: usize) -> [[f64; H]; 3] {
+    fn homogeneous<const N: usize>(&self, basis: &LocalBasis<N>, order: usize) -> [[f64; H]; 3] {
         let mut out = [[0.0; H]; 3];
         let points = &self.points()[basis.first()..];
         for (k, sum) in out.iter_mut().enumerate().take(order + 1) {
@@ -79,8 +87,7 @@ impl<const H: usize> NurbsCurve<H> {
 
     /// Coordinates (all but the last) of point and derivatives after division by the weight.
     pub(super) fn rational(&self, t: f64, order: usize) -> [[f64; H]; 3] {
-        let basis = self.knots().basis_derivatives(t, order);
-        divide(self.homogeneous(&basis, order))
+        divide(self.homogeneous_at(t, order))
     }
 }
 
@@ -100,7 +107,7 @@ impl NurbsCurve3 {
     /// Homogeneous point `(w x, w y, w z, w)` at `t`.
     #[must_use]
     pub fn homogeneous_point(&self, t: f64) -> [f64; 4] {
-        self.homogeneous(&self.knots().basis_derivatives(t, 0), 0)[0]
+        self.homogeneous_at(t, 0)[0]
     }
 
     /// Point at `t`.
@@ -171,10 +178,24 @@ impl NurbsSurface {
         quotients(&self.sums_at::<2>(u, v))
     }
 
+    /// As [`derivatives`](Self::derivatives), of the plane through the point and both tangents: the second are zero.
+    pub(super) fn tangent_plane(&self, u: f64, v: f64) -> SurfaceDerivatives {
+        let (point, du, dv) = self.first_derivatives(u, v);
+        let zero = Vector3::zeros();
+        SurfaceDerivatives { point, du, dv, duu: zero, duv: zero, dvv: zero }
+    }
+
     /// As [`derivatives`](Self::derivatives), by bases that were computed before with order 2.
     #[must_use]
     pub fn derivatives_by(&self, bu: &LocalBasis, bv: &LocalBasis) -> SurfaceDerivatives {
         quotients(&self.sums::<2, _>(bu, bv))
+    }
+
+    /// As [`point`](Self::point), by bases that were computed before.
+    #[must_use]
+    pub fn point_by(&self, bu: &LocalBasis, bv: &LocalBasis) -> Point3<f64> {
+        let h = self.sums::<0, _>(bu, bv)[0];
+        Point3::new(h[0] / h[3], h[1] / h[3], h[2] / h[3])
     }
 
     /// Unit normal `du × dv / |du × dv|`; `None` where the parametrisation is singular.
@@ -253,11 +274,24 @@ impl NurbsSurface {
         vs: &[f64],
         places: &[[usize; 2]],
     ) -> Vec<(Point3<f64>, Vector3<f64>, Vector3<f64>)> {
-        let along = |knots: &KnotVector, at: &[f64]| -> Vec<LocalBasis> {
-            at.iter().map(|&t| knots.basis_derivatives(t, 1)).collect()
+        if self.knots_u().degree().max(self.knots_v().degree()) < USUAL {
+            self.tangents_by::<USUAL>(us, vs, places)
+        } else {
+            self.tangents_by::<{ KnotVector::MAX_DEGREE + 1 }>(us, vs, places)
+        }
+    }
+
+    fn tangents_by<const N: usize>(
+        &self,
+        us: &[f64],
+        vs: &[f64],
+        places: &[[usize; 2]],
+    ) -> Vec<(Point3<f64>, Vector3<f64>, Vector3<f64>)> {
+        let along = |knots: &KnotVector, at: &[f64]| -> Vec<LocalBasis<N>> {
+            at.iter().map(|&t| knots.basis_in_room(t, 1)).collect()
         };
         let (us, vs) = (along(self.knots_u(), us), along(self.knots_v(), vs));
-        let at = |&[i, j]: &[usize; 2]| quotients(&self.sums::<1, _>(&us[i], &vs[j]));
+        let at = |&[i, j]: &[usize; 2]| quotients(&self.sums::<1, N>(&us[i], &vs[j]));
         places.iter().map(at).map(|d| (d.point, d.du, d.dv)).collect()
     }
 

@@ -30,6 +30,8 @@ pub struct SurfaceProjection {
     pub v: f64,
     /// Point of the surface.
     pub point: Point3<f64>,
+    /// Derivatives by `u` and `v` there.
+    pub tangents: [Vector3<f64>; 2],
     /// Its distance from the point that was projected.
     pub distance: f64,
 }
@@ -45,6 +47,8 @@ pub struct Wrap {
 
 /// Steps allowed; a good seed takes 3 to 6.
 const MAX_STEPS: usize = 40;
+/// Steps allowed by first derivatives alone: next to the surface two or three do, and far from it they never end.
+const NEAR_STEPS: usize = 6;
 /// Halvings of a step that leads uphill.
 const MAX_HALVINGS: usize = 12;
 /// A step shorter than this part of the coordinates' magnitude ends the search: a few rounding errors.
@@ -169,6 +173,12 @@ struct Stand {
 }
 
 impl Stand {
+    fn projection(&self) -> SurfaceProjection {
+        let tangents = [self.at.du, self.at.dv];
+        let distance = self.square.sqrt();
+        SurfaceProjection { u: self.u, v: self.v, point: self.at.point, tangents, distance }
+    }
+
     /// Part of the residual along the tangents.
     fn tangential(&self, target: &Point3<f64>) -> f64 {
         let r = self.at.point - target;
@@ -188,14 +198,25 @@ pub fn foot_point(
     target: &Point3<f64>,
     seed: (f64, f64),
 ) -> SurfaceProjection {
+    descended(evaluate, range, target, seed, MAX_STEPS).0.projection()
+}
+
+/// Where a number of steps downhill lead, and whether no further one would lead on.
+fn descended(
+    evaluate: &impl Fn(f64, f64) -> SurfaceDerivatives,
+    range: &SearchRange,
+    target: &Point3<f64>,
+    seed: (f64, f64),
+    steps: usize,
+) -> (Stand, bool) {
     let stand = |u: f64, v: f64| {
         let (u, v) = (place_in(range.u, u, range.wrap.u), place_in(range.v, v, range.wrap.v));
         let at = evaluate(u, v);
         Stand { u, v, at, square: (at.point - target).norm_squared() }
     };
     let mut now = stand(seed.0, seed.1);
-    for _ in 0..MAX_STEPS {
-        let Some((mut du, mut dv)) = downhill(&now, target, range) else { break };
+    for _ in 0..steps {
+        let Some((mut du, mut dv)) = downhill(&now, target, range) else { return (now, true) };
         let mut moved = false;
         for _ in 0..MAX_HALVINGS {
             let trial = stand(now.u + du, now.v + dv);
@@ -215,10 +236,10 @@ pub fn foot_point(
             (du, dv) = (0.5 * du, 0.5 * dv);
         }
         if !moved {
-            break;
+            return (now, true);
         }
     }
-    SurfaceProjection { u: now.u, v: now.v, point: now.at.point, distance: now.square.sqrt() }
+    (now, false)
 }
 
 /// Newton's step, with parameters that are held at a bound left alone; `None` at a minimum.
@@ -245,6 +266,10 @@ fn downhill(now: &Stand, target: &Point3<f64>, range: &SearchRange) -> Option<(f
             .or_else(|| solve_two((uu, uv, vv), (gu, gv)))
             .unwrap_or((alone(gu, uu, uu), alone(gv, vv, vv))),
     };
+    // A way that rounding of the coordinates could make is none.
+    if (at.du * du + at.dv * dv).norm() <= STEP_END * magnitude(target, &at.point.coords) {
+        return None;
+    }
     let part = |d: f64, (start, end): (f64, f64)| d.abs() / (MAX_PART * (end - start));
     let part = part(du, range.u).max(part(dv, range.v));
     let shrink = if part > 1.0 { 1.0 / part } else { 1.0 };
@@ -256,7 +281,13 @@ impl NurbsSurface {
     #[must_use]
     pub fn closest_from(&self, target: &Point3<f64>, seed: (f64, f64), wrap: Wrap) -> SurfaceProjection {
         let (u, v) = self.domain();
-        foot_point(&|u, v| self.derivatives(u, v), &SearchRange { u, v, wrap }, target, seed)
+        let range = SearchRange { u, v, wrap };
+        // Next to the surface its bend has no say, and first derivatives cost half.
+        let (near, found) = descended(&|u, v| self.tangent_plane(u, v), &range, target, seed, NEAR_STEPS);
+        if found {
+            return near.projection();
+        }
+        foot_point(&|u, v| self.derivatives(u, v), &range, target, seed)
     }
 }
 

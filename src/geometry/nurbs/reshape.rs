@@ -2,6 +2,7 @@
 //! iso-curves, boxes, closedness.
 
 use super::refine::transposed;
+use super::surface::Extent;
 use super::{KnotVector, NetError, NurbsCurve, NurbsCurve2, NurbsCurve3, NurbsSurface};
 use crate::math::{Affine, BoundingBox, Point2, Point3};
 
@@ -182,27 +183,36 @@ impl NurbsSurface {
     /// Box of the control points, which holds the surface.
     #[must_use]
     pub fn bounding_box(&self) -> BoundingBox {
-        let mut bounds = BoundingBox::EMPTY;
-        self.control_points().for_each(|p| bounds.include(&p));
-        bounds
+        self.spanned().bounds
     }
 
     /// Whether the first and last curve of constant `u` agree within a distance, control point by control
     /// point.
     #[must_use]
     pub fn is_closed_u(&self, tolerance: f64) -> bool {
-        let (start, end) = self.knots_u().domain();
-        let (a, b) = (self.iso_curve_u(start), self.iso_curve_u(end));
-        a.control_points().zip(b.control_points()).all(|(a, b)| (a - b).norm() <= tolerance)
+        self.spanned().apart[0] <= tolerance
     }
 
     /// Whether the first and last curve of constant `v` agree within a distance, control point by control
     /// point.
     #[must_use]
     pub fn is_closed_v(&self, tolerance: f64) -> bool {
-        let (start, end) = self.knots_v().domain();
-        let (a, b) = (self.iso_curve_v(start), self.iso_curve_v(end));
-        a.control_points().zip(b.control_points()).all(|(a, b)| (a - b).norm() <= tolerance)
+        self.spanned().apart[1] <= tolerance
+    }
+
+    fn spanned(&self) -> &Extent {
+        self.extent(|| {
+            let apart = |a: NurbsCurve3, b: NurbsCurve3| {
+                let pairs = a.control_points().zip(b.control_points());
+                pairs.map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
+            };
+            let ((u0, u1), (v0, v1)) = self.domain();
+            let around_u = apart(self.iso_curve_u(u0), self.iso_curve_u(u1));
+            let around_v = apart(self.iso_curve_v(v0), self.iso_curve_v(v1));
+            let mut bounds = BoundingBox::EMPTY;
+            self.control_points().for_each(|p| bounds.include(&p));
+            Extent { bounds, apart: [around_u, around_v] }
+        })
     }
 }
 

@@ -7,6 +7,7 @@ use crate::brep::{
 };
 use crate::geometry::Surface;
 use crate::math::Point3;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// Samples of an edge from its start to its end, and their vertices in the mesh.
@@ -52,16 +53,16 @@ impl Context<'_> {
 pub(super) fn loops(context: &mut Context) -> Result<Vec<Vec<Corner>>, TessellateError> {
     let (brep, face, edges) = (context.brep, context.face, context.edges);
     let sampling = LoopSampling::of_tolerance(AGREEMENT * context.tolerances.chord);
-    let samples = |edge: EdgeId| edges.get(&edge).map(|shared| shared.samples.clone());
+    let samples = |edge: EdgeId| edges.get(&edge).map(|shared| Cow::Borrowed(shared.samples.as_slice()));
     let found = parameter_loops_with(brep, face, &sampling, &samples)
         .map_err(|source| TessellateError::Bounds { face, source })?;
+    // Places between the samples only tell the way, and are no vertices.
     let corners =
-        |l: &ParameterLoop| l.points.iter().map(|p| corner(brep, p, edges)).collect::<Option<Vec<_>>>();
+        |l: &ParameterLoop| l.points.iter().filter_map(|p| corner(brep, p, edges)).collect::<Vec<_>>();
     let mut loops = Vec::with_capacity(found.len());
     let mut winding = Vec::new();
     for parameter_loop in &found {
-        let mut corners =
-            corners(parameter_loop).expect("the points are samples of the edges that were given");
+        let mut corners = corners(parameter_loop);
         let turns = [parameter_loop.winding.0, parameter_loop.winding.1];
         spread(&mut corners);
         let [Some(first), Some(last)] = [corners.first(), corners.last()] else { continue };
@@ -220,7 +221,8 @@ fn needs_border(context: &Context, loops: &[Vec<Corner>]) -> bool {
     }
     let round = matches!(surface, Surface::Sphere { .. } | Surface::Torus { .. });
     let left = if context.brep.faces[context.face].same_sense { 1.0 } else { -1.0 };
-    round && loops.iter().all(|corners| twice_area(corners) * left < 0.0)
+    let seams = context.brep.bounds_are_seams(context.face);
+    round && !seams && loops.iter().all(|corners| twice_area(corners) * left < 0.0)
 }
 
 /// The border of a surface with finite parameters as a polygon: closed sides share their vertices, and a side
@@ -414,18 +416,15 @@ fn pole(context: &Context, only: &Winding) -> Option<f64> {
     let left = if context.brep.faces[context.face].same_sense { 1.0 } else { -1.0 };
     // Left of the direction of u is the direction of v; left of that of v is against that of u.
     let upward = left * only.turns[along] * if along == 0 { 1.0 } else { -1.0 } > 0.0;
-    let place = match surface {
-        Surface::Cone { radius, semi_angle, .. } => -radius / semi_angle.tan(),
-        _ => {
-            let ((u0, u1), (v0, v1)) = surface.domain();
-            match (along, upward) {
-                (0, false) => v0,
-                (0, true) => v1,
-                (_, false) => u0,
-                (_, true) => u1,
-            }
+    let place = surface.apex().unwrap_or_else(|| {
+        let ((u0, u1), (v0, v1)) = surface.domain();
+        match (along, upward) {
+            (0, false) => v0,
+            (0, true) => v1,
+            (_, false) => u0,
+            (_, true) => u1,
         }
-    };
+    });
     let begin = only.corners.first()?.uv;
     let at = if along == 0 { [begin[0], place] } else { [place, begin[1]] };
     let d = context.surface.derivatives(at[0], at[1]);

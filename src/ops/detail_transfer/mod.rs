@@ -4,7 +4,7 @@
 //! sum of the target and the chosen levels of the source, on the union of their knots. In the local frame each
 //! wavelet turns with the coarse curve that it sits on, so that detail follows a target that runs elsewhere.
 //!
-//! [`transfer`] takes and gives splines; [`plan()`] curves of a model, and gives a change set. Neither knows files.
+//! [`transfer()`] takes and gives splines; [`plan()`] curves of a model, and gives a change set. Neither knows files.
 //!
 //! What it does not do: curves that are edges of faces, curves in the plane, periodic decompositions.
 //!

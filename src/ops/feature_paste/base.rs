@@ -6,10 +6,8 @@
 
 use super::PasteError;
 use crate::geometry::nurbs::{KnotVector, NurbsSurface, gram};
-use crate::math::sparse::SymmetricFactor;
-use crate::math::{CsMat, TriMat};
-use crate::ops::net::Mask;
 use crate::ops::net::sampling::mean_lengths;
+use crate::ops::net::{GridSystem, Mask};
 
 /// Points in each direction at which the physical size of the domain is measured.
 const SIZE_SAMPLES: usize = 33;
@@ -56,19 +54,15 @@ impl Bands {
 /// [`PasteError::SingularSystem`], [`PasteError::WeightNotPositive`].
 pub fn smoothed(surface: &NurbsSurface, chosen: &Mask) -> Result<NurbsSurface, PasteError> {
     let (rows, columns) = surface.shape();
-    let unknowns: Vec<usize> = chosen.indices().collect();
-    let mut number = vec![usize::MAX; rows * columns];
-    for (k, &at) in unknowns.iter().enumerate() {
-        number[at] = k;
-    }
     let [length_u, length_v] = mean_lengths(surface, SIZE_SAMPLES);
     let side = (length_u / length_v).sqrt();
     let side = if side.is_finite() && side > 0.0 { side } else { 1.0 };
     let (bu, bv) = (Bands::new(surface.knots_u(), side), Bands::new(surface.knots_v(), 1.0 / side));
-    let count = unknowns.len();
+    let mut system = GridSystem::new(chosen, [bu.degree, bv.degree]);
+    let count = system.len();
     let mut right = vec![0.0; 4 * count];
-    let (mut starts, mut indices, mut values) = (vec![0], Vec::new(), Vec::new());
-    for (k, &at) in unknowns.iter().enumerate() {
+    for k in 0..count {
+        let at = system.places()[k];
         let (i, j) = (at / columns, at % columns);
         for i2 in bu.near(i, rows) {
             let a = bu.at(i, i2);
@@ -76,33 +70,22 @@ pub fn smoothed(surface: &NurbsSurface, chosen: &Mask) -> Result<NurbsSurface, P
                 let b = bv.at(j, j2);
                 let energy = a[2] * b[0] + 2.0 * a[1] * b[1] + a[0] * b[2];
                 let other = i2 * columns + j2;
-                if number[other] == usize::MAX {
+                system.add(k, other, energy);
+                if system.number(other).is_none() {
                     for (c, coordinate) in surface.net()[other].iter().enumerate() {
                         right[c * count + k] -= energy * coordinate;
                     }
-                } else {
-                    indices.push(number[other]);
-                    values.push(energy);
                 }
             }
         }
-        starts.push(indices.len());
     }
-    let matrix = CsMat::new((count, count), starts, indices, values);
-    solve(&matrix, &mut right)?;
-    with_points(surface, &unknowns, &right)
+    solve(&system, &mut right)?;
+    with_points(surface, system.places(), &right)
 }
 
-/// Solves a symmetric positive definite system for several right sides in place.
-pub(super) fn solve(matrix: &CsMat<f64>, right: &mut [f64]) -> Result<(), PasteError> {
-    let singular = |_| PasteError::SingularSystem { unknowns: matrix.rows() };
-    SymmetricFactor::new(matrix).map_err(singular)?.solve(right);
-    Ok(())
-}
-
-/// As [`solve`], from triplets of which equal places add up.
-pub(super) fn solve_triplets(triplets: &TriMat<f64>, right: &mut [f64]) -> Result<(), PasteError> {
-    solve(&triplets.to_csr(), right)
+/// Solves a system over a net for several right sides in place.
+pub(super) fn solve(system: &GridSystem, right: &mut [f64]) -> Result<(), PasteError> {
+    system.solve(right).map_err(|_| PasteError::SingularSystem { unknowns: system.len() })
 }
 
 /// The surface with new homogeneous points, given coordinate by coordinate.

@@ -43,8 +43,13 @@ pub(super) fn euclidean(point: &Point) -> Vector3<f64> {
 }
 
 impl Block {
-    /// Gathers the box of a matched pair.
-    pub fn new(matched: &Matched, method: Method, settings: &Settings) -> Result<Self, PasteError> {
+    /// Gathers the box of a matched pair; `base` is the source's where it is known already.
+    pub fn new(
+        matched: &Matched,
+        base: Option<&NurbsSurface>,
+        method: Method,
+        settings: &Settings,
+    ) -> Result<Self, PasteError> {
         let small = || PasteError::RegionTooSmall { rows: 0, columns: 0, needed: 1 };
         let extent = matched.own.extent().ok_or_else(small)?;
         let ranges = [0, 1].map(|k| {
@@ -66,7 +71,10 @@ impl Block {
             debug_assert!(at < matched.source.net().len());
             own.insert(k / columns, k % columns);
         }
-        let source_base = smoothed(&matched.source, &matched.own)?;
+        let source_base = match base {
+            Some(base) => base.clone(),
+            None => smoothed(&matched.source, &matched.own)?,
+        };
         let keeps_target = method == Method::Displacement && settings.existing == Existing::Keep;
         let target_base =
             if keeps_target { matched.target.clone() } else { smoothed(&matched.target, &matched.partners)? };

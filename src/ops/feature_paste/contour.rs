@@ -110,6 +110,19 @@ impl<'a> Projector<'a> {
         Vector2::new(self.axes[0].dot(&d), self.axes[1].dot(&d))
     }
 
+    /// Whether a place of the surface lies inside the contour, as seen along the normal.
+    fn within(&self, contour: &[Point3<f64>]) -> bool {
+        let corners: Vec<Vector2<f64>> = contour.iter().map(|point| self.flat(point)).collect();
+        let sides = || corners.iter().zip(corners.iter().cycle().skip(1));
+        let inside = |p: &Vector2<f64>| {
+            let crosses = |a: &Vector2<f64>, b: &Vector2<f64>| {
+                (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)
+            };
+            sides().filter(|(a, b)| crosses(a, b)).count() % 2 == 1
+        };
+        self.seeds.iter().any(|seed| inside(&seed.flat))
+    }
+
     /// Newton's method from one seed: parameters whose point lies on the normal through the target.
     fn descend(&self, goal: &Vector2<f64>, seed: [f64; 2]) -> Option<[f64; 2]> {
         let (du, dv) = self.surface.domain();
@@ -159,8 +172,8 @@ impl<'a> Projector<'a> {
 /// Parameters of the source for each point of a closed contour, along the normal of a plane.
 ///
 /// # Errors
-/// [`PasteError::ContourProjectionFailed`], [`PasteError::ContourJumpsSheet`], [`PasteError::ContourDegenerate`],
-/// [`PasteError::ContourNotFinite`].
+/// [`PasteError::ContourProjectionFailed`], [`PasteError::ContourOffFace`], [`PasteError::ContourLargerThanFace`],
+/// [`PasteError::ContourJumpsSheet`], [`PasteError::ContourDegenerate`], [`PasteError::ContourNotFinite`].
 pub fn project_contour(
     surface: &NurbsSurface,
     points: &[Point3<f64>],
@@ -174,13 +187,22 @@ pub fn project_contour(
         return Err(PasteError::ContourNotFinite);
     }
     let projector = Projector::new(surface, Plane { normal, ..plane });
-    let mut out: Vec<[f64; 2]> = Vec::with_capacity(points.len());
-    for (point, target) in points.iter().enumerate() {
-        let found = projector.project(target, out.last().copied());
-        out.push(found.ok_or(PasteError::ContourProjectionFailed { point })?);
+    let mut found: Vec<Option<[f64; 2]>> = Vec::with_capacity(points.len());
+    for target in points {
+        let before = found.last().copied().flatten();
+        found.push(projector.project(target, before));
     }
-    refuse_jumps(surface, points, &out)?;
-    Ok(out)
+    if let Some(out) = found.iter().copied().collect::<Option<Vec<_>>>() {
+        return refuse_jumps(surface, points, &out).map(|()| out);
+    }
+    Err(match found.iter().position(Option::is_some) {
+        None if projector.within(points) => PasteError::ContourLargerThanFace,
+        None => PasteError::ContourOffFace,
+        Some(_) => {
+            let point = found.iter().position(Option::is_none).unwrap_or(0);
+            PasteError::ContourProjectionFailed { point }
+        }
+    })
 }
 
 /// A side that is long in parameters and not in space jumps.

@@ -58,9 +58,24 @@ pub enum PasteError {
         /// Parameters of the source.
         at: [f64; 2],
     },
-    /// The contour leaves the source surface.
-    #[error("the contour leaves the source surface at parameters ({:.6}, {:.6})", at[0], at[1])]
+    /// The contour leaves the source face.
+    #[error("the contour leaves the source face at parameters ({:.6}, {:.6})", at[0], at[1])]
     ContourOutside {
+        /// Parameters of the source.
+        at: [f64; 2],
+    },
+    /// No point of the contour lies on the source face.
+    #[error("the contour lies off the source face: none of its points is on the face")]
+    ContourOffFace,
+    /// The contour goes round the whole source face.
+    #[error("the contour is larger than the source face: it goes round the whole face")]
+    ContourLargerThanFace,
+    /// The contour meets the border of the source face.
+    #[error(
+        "the contour touches the border of the source face at parameters ({:.6}, {:.6}); expected one inside, or \
+         `loop = \"outer\"` for all that the border holds", at[0], at[1]
+    )]
+    ContourTouchesBorder {
         /// Parameters of the source.
         at: [f64; 2],
     },
@@ -224,6 +239,9 @@ impl PasteError {
             Self::ContourOpen { .. } => "paste.contour-open",
             Self::ContourCrosses { .. } => "paste.contour-crosses-itself",
             Self::ContourOutside { .. } => "paste.contour-outside-source",
+            Self::ContourOffFace => "paste.contour-off-face",
+            Self::ContourLargerThanFace => "paste.contour-larger-than-face",
+            Self::ContourTouchesBorder { .. } => "paste.contour-touches-border",
             Self::ContourProjectionFailed { .. } => "paste.contour-projection-failed",
             Self::ContourJumpsSheet { .. } => "paste.contour-jumps-sheet",
             Self::RegionTooSmall { .. } => "paste.region-too-small",

@@ -4,10 +4,11 @@
 //! Source: Poisson mesh editing on control nets, with the corrections of `docs/decisions/feature-paste.md`.
 
 use super::PasteError;
-use super::base::solve_triplets;
+use super::base::solve;
 use super::block::{Block, Point, euclidean};
 use super::settings::{EdgeWeights, Existing, Settings, Turn};
-use crate::math::{Matrix3, TriMat, Vector3};
+use crate::math::{Matrix3, Vector3};
+use crate::ops::net::GridSystem;
 
 /// Gap of Greville abscissae below which a multiple knot would give an infinite weight.
 const LEAST_GAP: f64 = 1e-12;
@@ -118,17 +119,6 @@ impl<'a> Graph<'a> {
     }
 }
 
-/// Numbers of the unknowns by place; `usize::MAX` for data.
-fn numbers(block: &Block) -> (Vec<usize>, usize) {
-    let mut number = vec![usize::MAX; block.rows * block.columns];
-    let mut count = 0;
-    for at in block.own.indices() {
-        number[at] = count;
-        count += 1;
-    }
-    (number, count)
-}
-
 /// Points from columns of coordinates.
 fn points(columns: &[f64], count: usize) -> Vec<Point> {
     (0..count).map(|k| [0, 1, 2, 3].map(|c| columns[c * count + k])).collect()
@@ -140,26 +130,26 @@ fn points(columns: &[f64], count: usize) -> Vec<Point> {
 /// [`PasteError::SingularSystem`].
 pub(super) fn poisson(block: &Block, settings: &Settings) -> Result<Vec<Point>, PasteError> {
     let graph = Graph::new(block, settings);
-    let (number, count) = numbers(block);
-    let mut matrix = TriMat::new((count, count));
+    let mut system = GridSystem::new(&block.own, [1, 1]);
+    let count = system.len();
     let mut right = vec![0.0; 4 * count];
-    for (k, (p, wanted)) in block.own.indices().zip(graph.wanted_laplacians()).enumerate() {
+    for (k, wanted) in graph.wanted_laplacians().into_iter().enumerate() {
+        let own = system.places()[k];
         let mut sum = wanted;
         let mut diagonal = 0.0;
-        for (q, weight) in graph.neighbours(p) {
+        for (q, weight) in graph.neighbours(own) {
             diagonal += weight;
-            if number[q] == usize::MAX {
+            system.add(k, q, -weight);
+            if system.number(q).is_none() {
                 sum = [0, 1, 2, 3].map(|c| sum[c] + weight * block.target[q][c]);
-            } else {
-                matrix.add_triplet(k, number[q], -weight);
             }
         }
-        matrix.add_triplet(k, k, diagonal);
+        system.add(k, own, diagonal);
         for c in 0..4 {
             right[c * count + k] = sum[c];
         }
     }
-    solve_triplets(&matrix, &mut right)?;
+    solve(&system, &mut right)?;
     Ok(points(&right, count))
 }
 
@@ -170,35 +160,35 @@ pub(super) fn poisson(block: &Block, settings: &Settings) -> Result<Vec<Point>, 
 /// [`PasteError::SingularSystem`].
 pub(super) fn biharmonic(block: &Block, settings: &Settings) -> Result<Vec<Point>, PasteError> {
     let graph = Graph::new(block, settings);
-    let (number, count) = numbers(block);
+    let mut system = GridSystem::new(&block.own, [2, 2]);
+    let count = system.len();
     let wanted = graph.wanted_laplacians();
-    let mut matrix = TriMat::new((count, count));
     let mut right = vec![0.0; 4 * count];
     for row in block.own.dilated(1).indices() {
         let mut entries: Vec<(usize, f64)> = graph.neighbours(row).map(|(q, w)| (q, -w)).collect();
         let diagonal: f64 = entries.iter().map(|(_, w)| -w).sum();
         entries.push((row, diagonal));
-        let own = number[row] != usize::MAX;
-        let mut rest = if own { wanted[number[row]] } else { [0.0; 4] };
+        let own = system.number(row);
+        let mut rest = own.map_or([0.0; 4], |k| wanted[k]);
         for &(q, weight) in &entries {
             // On the ring the target's own Laplacian is wanted, of which the data parts cancel.
-            let data = number[q] == usize::MAX;
-            let sign = match (own, data) {
-                (true, true) => -1.0,
-                (false, false) => 1.0,
+            let sign = match (own, system.number(q)) {
+                (Some(_), None) => -1.0,
+                (None, Some(_)) => 1.0,
                 _ => 0.0,
             };
             rest = [0, 1, 2, 3].map(|c| rest[c] + sign * weight * block.target[q][c]);
         }
-        for &(q, a) in entries.iter().filter(|(q, _)| number[*q] != usize::MAX) {
+        for &(q, a) in &entries {
+            let Some(k) = system.number(q) else { continue };
             for c in 0..4 {
-                right[c * count + number[q]] += a * rest[c] / diagonal;
+                right[c * count + k] += a * rest[c] / diagonal;
             }
-            for &(r, b) in entries.iter().filter(|(r, _)| number[*r] != usize::MAX) {
-                matrix.add_triplet(number[q], number[r], a * b / diagonal);
+            for &(r, b) in &entries {
+                system.add(k, r, a * b / diagonal);
             }
         }
     }
-    solve_triplets(&matrix, &mut right)?;
+    solve(&system, &mut right)?;
     Ok(points(&right, count))
 }

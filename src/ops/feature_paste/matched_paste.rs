@@ -7,7 +7,7 @@ use super::creases::mended;
 use super::displacement::displaced;
 use super::identify::{contour_polygon, refine_for_region};
 use super::laplacian::{biharmonic, poisson};
-use super::matching::matched;
+use super::matching::{Matched, matched};
 use super::settings::{Feature, Ground, Method, Pasted, Settings};
 
 /// Rows and columns of own control points that a region needs.
@@ -34,7 +34,9 @@ pub(super) fn paste(
         Method::Poisson | Method::Biharmonic => 1,
     };
     let nets = matched((&source, &sets, &base), &contour, feature.anchor, &ground, (settings, reach))?;
-    let block = Block::new(&nets, method, settings)?;
+    // The base is the same where no knot was wanting on the source.
+    let known = (nets.source == source && nets.own == sets.own).then_some(&base);
+    let block = Block::new(&nets, known, method, settings)?;
     let points = match method {
         Method::Displacement => displaced(&block),
         Method::Poisson => poisson(&block, settings)?,
@@ -46,9 +48,7 @@ pub(super) fn paste(
     }
     let surface = with_net(&nets.target, net)?;
     let surface = with_net(&nets.target, mended(&nets.target, &surface, &nets.partners))?;
-    let lost_base = smoothed(&nets.source, &nets.own.union(&nets.lost))?;
-    let off = |at: usize| (euclidean(&nets.source.net()[at]) - euclidean(&lost_base.net()[at])).norm();
-    let lost_detail = nets.lost.indices().map(off).fold(0.0, f64::max);
+    let lost_detail = lost_detail(&nets)?;
     Ok(Pasted {
         surface,
         map: nets.parameter_map(feature.anchor, ground.at),
@@ -60,4 +60,14 @@ pub(super) fn paste(
         method,
         fit_error: None,
     })
+}
+
+/// Greatest displacement, in the source's units, of a control point without a partner.
+fn lost_detail(nets: &Matched) -> Result<f64, PasteError> {
+    if nets.lost.count() == 0 {
+        return Ok(0.0);
+    }
+    let base = smoothed(&nets.source, &nets.own.union(&nets.lost))?;
+    let off = |at: usize| (euclidean(&nets.source.net()[at]) - euclidean(&base.net()[at])).norm();
+    Ok(nets.lost.indices().map(off).fold(0.0, f64::max))
 }

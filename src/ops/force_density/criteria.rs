@@ -23,6 +23,19 @@ impl Criteria {
     /// No measure: to be filled in.
     pub const NONE: Self = Self { force_variation: 0.0, force: 0.0, bar_length: 0.0, displacement: 0.0 };
 
+    /// The same measures on a net that was refined until its bars were `share` times as long: sums over more and shorter bars
+    /// count otherwise, and without this a finer net would be another problem.
+    #[must_use]
+    pub fn refined(&self, share: f64) -> Self {
+        // Forces go with the square of a bar's length, per node: those of all nodes together with its square.
+        let square = share * share;
+        Self {
+            bar_length: self.bar_length * square,
+            displacement: self.displacement * square * square,
+            ..*self
+        }
+    }
+
     /// # Errors
     /// [`ForceDensityError::NotPositive`].
     pub(super) fn check(&self) -> Result<(), ForceDensityError> {

@@ -127,10 +127,16 @@ impl Polygon {
     /// Whether two polygons cross, or one lies within the other.
     #[must_use]
     pub fn overlaps(&self, other: &Self) -> bool {
+        let nested = self.contains(other.points[0]) || other.contains(self.points[0]);
+        nested || self.crosses(other).is_some()
+    }
+
+    /// A place near which the two cross.
+    #[must_use]
+    pub fn crosses(&self, other: &Self) -> Option<[f64; 2]> {
         let mut sides: Vec<_> = self.sides().map(|s| (s, 0)).collect();
         sides.extend(other.sides().map(|s| (s, 1)));
-        let nested = self.contains(other.points[0]) || other.contains(self.points[0]);
-        nested || sweep(&sides, |a, b| a != b).is_some()
+        sweep(&sides, |a, b| a != b)
     }
 
     fn first_crossing(&self) -> Option<[f64; 2]> {

@@ -153,16 +153,12 @@ fn composite(scope: Scope<'_>, view: &EntityView<'_>, nest: Nest<'_>) -> Result<
     PatchGrid::new(patches, rows).map(Surface::Composite).ok_or(ReadError::Unbounded { attribute })
 }
 
-/// A `SURFACE_REPLICA`: the parent's image under a scale, turn and shift. A mirror turns the normal of the parent's
-/// parametrisation with it, which a plane or a quadric in a right-handed frame cannot follow.
+/// A `SURFACE_REPLICA`: the parent's image under a scale, turn, mirror and shift.
 fn replica(scope: Scope<'_>, view: &EntityView<'_>, nest: Nest<'_>) -> Result<Surface, ReadError> {
     let parent = part(scope, view, "parent_surface", nest)?;
     let name = view.reference("transformation")?;
     let map = placing(scope, name)?;
-    if parent.image_turns_normal(&map) == map.keeps_orientation() {
-        return Err(ReadError::NotReadYet);
-    }
-    parent.transformed(&map).map_err(|_| ReadError::Coordinates(name))
+    parent.replica(&map).map_err(|_| ReadError::Coordinates(name))
 }
 
 fn swept(scope: Scope<'_>, view: &EntityView<'_>) -> Result<Box<Curve>, ReadError> {

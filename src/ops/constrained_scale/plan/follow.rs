@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::HeldPiece;
 use super::contour::SpaceLoop;
 use super::held::Held;
 use super::scope::face_name;
@@ -44,6 +45,43 @@ pub(super) struct Follow {
     pub vertices: BTreeMap<VertexId, usize>,
     /// Edges along walls that become longer.
     pub generators: BTreeSet<EdgeId>,
+}
+
+impl Follow {
+    /// The elements that keep their shape, piece by piece; pieces that stretch along some axes have none.
+    pub fn held_pieces(&self, stretched: &Stretched) -> Vec<HeldPiece> {
+        let longer: BTreeSet<FaceId> = stretched.rings.iter().flat_map(|ring| &ring.faces).copied().collect();
+        let rigid = self.movers.iter().enumerate().filter(|(_, mover)| mover.rigid);
+        let piece = |(number, mover): (usize, &Mover)| {
+            let faces = self.faces.iter().filter(|(face, of)| **of == number && !longer.contains(face));
+            let edges = self.edges.iter().filter(|(e, of)| **of == number && !self.generators.contains(e));
+            let vertices = self.vertices.iter().filter(|(_, of)| **of == number);
+            HeldPiece {
+                motion: mover.map,
+                faces: faces.map(|(&face, _)| face).collect(),
+                edges: edges.map(|(&edge, _)| edge).collect(),
+                vertices: vertices.map(|(&vertex, _)| vertex).collect(),
+            }
+        };
+        rigid.map(piece).collect()
+    }
+}
+
+/// What is held where nothing moves.
+pub(super) fn unmoved(model: &Model, held: &Held) -> Vec<HeldPiece> {
+    let brep = &model.brep;
+    let of_loops = held.loops.iter().flat_map(|held| &brep.loops[held.id].coedges);
+    let of_loops = of_loops.map(|&coedge| brep.coedges[coedge].edge);
+    let edges: BTreeSet<EdgeId> = held.edges.keys().copied().chain(of_loops).collect();
+    let vertices: BTreeSet<VertexId> =
+        edges.iter().flat_map(|&edge| [brep.edges[edge].start, brep.edges[edge].end]).collect();
+    let piece = HeldPiece {
+        motion: Affine::identity(),
+        faces: held.hanging.keys().copied().collect(),
+        edges: edges.into_iter().collect(),
+        vertices: vertices.into_iter().collect(),
+    };
+    if piece.edges.is_empty() { Vec::new() } else { vec![piece] }
 }
 
 /// Finds what every element follows.

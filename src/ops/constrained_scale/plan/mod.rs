@@ -36,8 +36,9 @@ pub use scope::Scope;
 pub use target::{HoldTarget, LoopFilter};
 
 use super::scaling::{Hold, Scaling};
-use crate::brep::FaceId;
+use crate::brep::{EdgeId, FaceId, VertexId};
 use crate::diagnostic::Diagnostic;
+use crate::math::Affine;
 use crate::model::{ChangeSet, Model};
 use crate::ops::OperationError;
 
@@ -80,6 +81,21 @@ pub struct Plan {
     pub measures: Measures,
     /// Facts worth telling: loops that were held by propagation, faces that stayed.
     pub notes: Vec<Diagnostic>,
+    /// What kept its shape.
+    pub held: Vec<HeldPiece>,
+}
+
+/// Elements that kept their shape, with the rigid motion that they share.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeldPiece {
+    /// The motion.
+    pub motion: Affine,
+    /// Faces; not those of walls that became longer.
+    pub faces: Vec<FaceId>,
+    /// Edges.
+    pub edges: Vec<EdgeId>,
+    /// Their vertices.
+    pub vertices: Vec<VertexId>,
 }
 
 /// Plans a constrained scaling.
@@ -95,7 +111,8 @@ pub fn plan(model: &Model, params: &Params) -> Result<Plan, OperationError> {
     let held = flood::find(model, &faces, params, &mut notes)?;
     let moves = matches!(params.mode, Hold::Pinned(Some(_))) && !held.bases.is_empty();
     if plain.is_identity() && !moves {
-        return Ok(Plan { change_set: ChangeSet::default(), measures: Measures::default(), notes });
+        let (change_set, measures) = (ChangeSet::default(), Measures::default());
+        return Ok(Plan { change_set, measures, notes, held: follow::unmoved(model, &held) });
     }
     let stretched = stretch::stretch(model, &held, params, &plain)?;
     notes.extend(report::notes(model, &held, &stretched, params.wall));
@@ -105,5 +122,6 @@ pub fn plan(model: &Model, params: &Params) -> Result<Plan, OperationError> {
     let mut change_set = assemble::change_set(model, &faces, &held, &stretched, &follow, &plain)?;
     let measures = report::measure(model, &held, &stretched, &change_set)?;
     assemble::free_curves(model, &params.scope, &plain, &mut change_set, &mut notes);
-    Ok(Plan { change_set, measures, notes })
+    let held = follow.held_pieces(&stretched);
+    Ok(Plan { change_set, measures, notes, held })
 }

@@ -57,7 +57,8 @@ pub struct FaceMeasures {
     pub refinements: usize,
     /// Smallest ratio of the new oriented area element to the plainly scaled one.
     pub area_ratio_min: f64,
-    /// Greatest distance from the closest point of the plainly scaled surface, outside the held cells.
+    /// Greatest distance from the closest point of the plainly scaled surface that was found outside the held cells, at
+    /// samples and at the corners of cells.
     pub deviation_max: f64,
     /// Root mean square of these distances.
     pub deviation_rms: f64,
@@ -127,7 +128,7 @@ pub(super) fn measure(
             control_points: [face.points_before, face.surface.net().len()],
             refinements: face.level,
             area_ratio_min: face.compression.ratio,
-            deviation_max: q.deviation_max,
+            deviation_max: proved.outside.map_or(0.0, |outside| outside.found).max(q.deviation_max),
             deviation_rms: q.deviation_rms,
             deviation_bound: bound(proved.outside),
             deviation_bound_held: bound(proved.held),

@@ -11,8 +11,8 @@ use crate::geometry::nurbs::{NurbsCurve2, NurbsSurface, SurfaceLocator, Wrap};
 use crate::math::{Affine, BoundingBox, Matrix3, Vector3};
 use crate::model::Context;
 use crate::ops::OperationError;
-use crate::ops::net::Polygon;
 use crate::ops::net::layout::{face_name, lay_out, spline_of};
+use crate::ops::net::{Contour, Domain, Polygon};
 
 /// A feature taken off its face: all that a paste needs of it, in its own units.
 #[derive(Debug, Clone)]
@@ -141,7 +141,12 @@ fn contour(
         }
     };
     let (u, v) = surface.domain();
+    // What is no polygon of the surface, the paste itself refuses.
     let Ok(polygon) = Polygon::new(&points, [0.0; 2], [u, v]) else { return Ok((points, Vec::new())) };
+    if chosen.is_none() {
+        let outer = layout.outer.and_then(|k| layout.loops[k].as_ref()).map(|shape| &shape.contour);
+        inside_border(&polygon, outer, [u, v])?;
+    }
     let inside = |k: &usize| {
         let shape = layout.loops[*k].as_ref().filter(|_| layout.is_inner(*k) && Some(*k) != chosen);
         shape.is_some_and(|l| l.contour.points.first().is_some_and(|&p| polygon.contains(p)))
@@ -156,6 +161,44 @@ fn contour(
         })?;
     let holes = within.into_iter().map(|k| hole_of(&model.brep, &traced[k], surface)).collect();
     Ok((points, holes))
+}
+
+/// Part of the domain within which a contour touches the border.
+const TOUCHES: f64 = 1e-6;
+
+/// Whether a contour stays within the outer bound of its face; within the domain where it has none.
+fn inside_border(contour: &Polygon, outer: Option<&Contour>, domain: Domain) -> Result<(), PasteError> {
+    let [u, v] = domain;
+    let whole = Contour { points: vec![[u.0, v.0], [u.1, v.0], [u.1, v.1], [u.0, v.1]], margin: [0.0; 2] };
+    let outer = outer.unwrap_or(&whole);
+    let Ok(border) = Polygon::new(&outer.points, outer.margin, domain) else { return Ok(()) };
+    let slack = [0, 1].map(|k| outer.margin[k].max(TOUCHES * (domain[k].1 - domain[k].0)));
+    let near = |p: &&[f64; 2], of: &Polygon| of.sides().any(|side| touches(**p, side, slack));
+    let touching = contour.points().iter().find(|p| near(p, &border));
+    let touching = touching.or_else(|| border.points().iter().find(|p| near(p, contour)));
+    if let Some(&at) = touching {
+        return Err(PasteError::ContourTouchesBorder { at });
+    }
+    match contour.points().iter().find(|p| !border.contains(**p)) {
+        Some(_) if contour.points().iter().all(|p| !border.contains(*p)) => {
+            let round = contour.contains(border.points()[0]);
+            Err(if round { PasteError::ContourLargerThanFace } else { PasteError::ContourOffFace })
+        }
+        Some(&at) => Err(PasteError::ContourOutside { at }),
+        None => match contour.crosses(&border) {
+            Some(at) => Err(PasteError::ContourOutside { at }),
+            None => Ok(()),
+        },
+    }
+}
+
+/// Whether a point is nearer to a side than the slack of each coordinate.
+fn touches(p: [f64; 2], (a, b): ([f64; 2], [f64; 2]), slack: [f64; 2]) -> bool {
+    let scaled = |q: [f64; 2]| [0, 1].map(|k| (q[k] - a[k]) / slack[k]);
+    let (way, to) = (scaled(b), scaled(p));
+    let length = way[0] * way[0] + way[1] * way[1];
+    let share = if length > 0.0 { ((to[0] * way[0] + to[1] * way[1]) / length).clamp(0.0, 1.0) } else { 0.0 };
+    (to[0] - share * way[0]).hypot(to[1] - share * way[1]) <= 1.0
 }
 
 /// Parameters of the anchor: nearest to the given point, or the middle of the contour's box.

@@ -247,8 +247,16 @@ fn replicas_are_images_of_their_parents() {
     let mirror =
         OPERATOR.replace("#153);", "#154);#154=DIRECTION('',(0.,0.,1.));").replace("#151,$,", "#151,#155,")
             + "#155=DIRECTION('',(1.,0.,0.));";
-    let (found, sink) = surface(&format!("{replica}#101=PLANE('',#11);{mirror}"));
-    assert_eq!((refused(&found), sink[0].code), ("not read yet", "step.not-read-yet"));
+    for parent in ["PLANE('',#11)", "CYLINDRICAL_SURFACE('',#11,1.5)"] {
+        let mirrored = good_surface(&format!("{replica}#101={parent};{mirror}"));
+        let plain = good_surface(&format!("#100={parent};"));
+        // (x, y, z) goes to (10 + 2 y, 2 x, 1 + 2 z).
+        let image = |[x, y, z]: [f64; 3]| [10.0 + 2.0 * y, 2.0 * x, 1.0 + 2.0 * z];
+        near(mirrored.point(0.3, 0.7), image(plain.point(0.3, 0.7).coords.into()));
+        let [nx, ny, nz] = plain.normal(0.3, 0.7).expect("regular").into();
+        let expected = -Vector3::new(ny, nx, nz);
+        assert!((mirrored.normal(0.3, 0.7).expect("regular") - expected).norm() < 1e-12, "{parent}");
+    }
     let (found, _) = surface(&format!("#100=SURFACE_REPLICA('',#100,#150);{OPERATOR}"));
     assert!(refused(&found).contains("nested too deep"), "{found:?}");
 }
