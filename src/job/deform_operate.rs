@@ -118,7 +118,10 @@ impl Source<'_> {
 }
 
 /// Points along a curve, or along an edge when that is what the name means.
-pub(super) fn curve_points(model: &Model, selector: Option<&CurveSelector>) -> Result<Vec<Point3<f64>>, String> {
+pub(super) fn curve_points(
+    model: &Model,
+    selector: Option<&CurveSelector>,
+) -> Result<Vec<Point3<f64>>, String> {
     let brep = &model.brep;
     let plain = |chord| EdgeSampling { chord, per_span: CHORDS };
     if let Some(CurveSelector::Record(wanted)) = selector {

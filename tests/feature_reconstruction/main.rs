@@ -6,9 +6,9 @@ mod blends;
 mod cloud_files;
 mod lines;
 mod parts;
-mod secondaries;
 #[path = "../../samples/generate/scan/mod.rs"]
 mod scan;
+mod secondaries;
 mod segmentation;
 #[expect(dead_code, reason = "this binary needs a part of it")]
 #[path = "../support/mod.rs"]

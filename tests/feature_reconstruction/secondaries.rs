@@ -50,7 +50,7 @@ impl Scanned {
     }
 
     /// Mean and greatest distance of the surface from the formula under the objective's points.
-    fn from_formula(&self, found: &NurbsSurface) -> [f64; 2] {
+    fn off_formula(&self, found: &NurbsSurface) -> [f64; 2] {
         let projector = Projector::new(found, Wrap::default());
         let feet = projector.feet(&self.objective);
         let off = feet.iter().map(|foot| {
@@ -79,7 +79,7 @@ fn settings<'a>([along, ribs]: [usize; 2], cloud: CloudUse) -> SecondarySettings
 
 /// Mean and greatest distance of the points from the surface, and of the surface from the formula.
 fn figures(scanned: &Scanned, found: &Secondary) -> [f64; 4] {
-    let [mean, greatest] = scanned.from_formula(&found.surface);
+    let [mean, greatest] = scanned.off_formula(&found.surface);
     [found.measures.deviation.mean, found.measures.deviation.greatest, mean, greatest]
 }
 

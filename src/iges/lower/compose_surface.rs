@@ -14,7 +14,7 @@ use crate::iges::to_model::scope::kind;
 use crate::iges::to_model::spline::Rectangle;
 use crate::iges::to_model::surface::{self, SurfaceRead, along, angles, composed, swap};
 use crate::math::{Affine, Frame, Point3, Vector2, Vector3};
-use crate::model::change_set::NewFace;
+use crate::model::change_set::{NewFace, NewSurface};
 
 /// What a surface's record is made for.
 struct Site<'g> {
@@ -86,10 +86,18 @@ impl Lowering<'_> {
         face: &NewFace,
         beside: &Ground,
     ) -> Result<(Record, ParameterMap), LowerError> {
-        let unwritable = || LowerError::Unwritable { number: beside.face, kind: face.surface.kind() };
+        let (changes, model) = (self.changes, self.model);
+        let surface = match &face.surface {
+            NewSurface::Own(surface) => Some(surface),
+            // A piece gets a copy of its own: the file's trimmed surfaces share none.
+            NewSurface::Of(old) => changes.surfaces.get(old).or_else(|| model.brep.surface_of(*old).read()),
+        };
+        let kind = surface.map_or("surface that was not read", Surface::kind);
+        let unwritable = || LowerError::Unwritable { number: beside.face, kind };
+        let surface = surface.ok_or_else(unwritable)?;
         let local = match beside.within.inverse() {
-            Some(_) if beside.within.is_identity() => face.surface.clone(),
-            Some(back) => face.surface.transformed(&back).map_err(|_| unwritable())?,
+            Some(_) if beside.within.is_identity() => surface.clone(),
+            Some(back) => surface.transformed(&back).map_err(|_| unwritable())?,
             None => return Err(unwritable()),
         };
         let turned = !beside.is_solid && !face.same_sense;

@@ -158,9 +158,9 @@ pub fn plan(model: &Model, params: &Params) -> Result<Plan, OperationError> {
     let near = Projector::new(&surface, Wrap::default());
     let sorted = params.scan.clone().sorted(&near)?;
     let longer = match extension(&near, &sorted.objective, sorted.spacing) {
-        Some([u, v]) => surface.extended((u, u), (v, v)).map_err(|error| ReconstructionError::Primary {
-            reason: error.to_string(),
-        })?,
+        Some([u, v]) => surface
+            .extended((u, u), (v, v))
+            .map_err(|error| ReconstructionError::Primary { reason: error.to_string() })?,
         None => surface.clone(),
     };
     let projector = Projector::new(&longer, Wrap::default());

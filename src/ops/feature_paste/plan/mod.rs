@@ -20,7 +20,7 @@ use super::{Feature, Ground, PasteError, contour::Plane};
 use crate::brep::{BodyKind, FaceId};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::geometry::nurbs::NurbsSurface;
-use crate::math::{Affine, rotation, Matrix3, Point3, Vector3};
+use crate::math::{Affine, Matrix3, Point3, Vector3, rotation};
 use crate::model::change_set::NewBound;
 use crate::model::{ChangeSet, Model};
 use crate::ops::OperationError;
