@@ -10,12 +10,12 @@ mod system;
 
 use super::PasteError;
 use super::base::{smoothed, with_net};
-use super::creases::mended;
 use super::frames::frame_of;
 use super::identify::{contour_polygon, refine_for_region};
 use super::settings::{Existing, Feature, Ground, Method, Mirror, ParameterMap, Pasted, Settings};
 use crate::geometry::nurbs::{KnotVector, NurbsSurface};
 use crate::math::Matrix2;
+use crate::ops::net::creases::mended;
 use crate::ops::net::{CellGrid, Mask, Polygon};
 use deviation::greatest_deviation;
 use field::Field;
@@ -26,7 +26,7 @@ const NEEDED: usize = 6;
 /// Degree to which a target of lower degree is raised, unless the source's is lower.
 pub(super) const DEGREE: usize = 3;
 /// Times the density may be doubled.
-const MAX_LEVEL: u32 = 3;
+const MAX_LEVEL: u32 = 4;
 /// Part of a domain by which a region may reach past the border through rounding.
 const PAST_BORDER: f64 = 1e-9;
 
@@ -62,7 +62,10 @@ pub(super) fn paste(
                 offset: None,
             });
         }
-        if level == MAX_LEVEL {
+        // A net that is twice as dense gains the order of its splines at best.
+        let order = target.knots_u().degree().max(target.knots_v().degree()) as i32 + 1;
+        let within_reach = fitted.error * 0.5_f64.powi(order * (MAX_LEVEL - level) as i32);
+        if within_reach > settings.tolerance || level == MAX_LEVEL {
             let (error, tolerance, points) = (fitted.error, settings.tolerance, refined.net().len());
             return Err(PasteError::FitToleranceNotReached { error, tolerance, points });
         }
