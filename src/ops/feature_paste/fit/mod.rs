@@ -120,6 +120,18 @@ fn refuse_outside(corners: &[[f64; 2]; 4], target: &NurbsSurface) -> Result<(), 
     Ok(())
 }
 
+/// Part of a domain by which a window is drawn in, above what counts as on a knot line.
+const DRAWN_IN: f64 = 4e-9;
+
+/// The window a little smaller: a side on a knot line would take in the cells beyond it, however large.
+fn drawn_in(corners: &[[f64; 2]; 4], domains: [(f64, f64); 2]) -> [[f64; 2]; 4] {
+    let extents = [0, 1].map(|k| extent(corners, k));
+    let centre = extents.map(|(low, high)| 0.5 * (low + high));
+    let share = |k: usize| DRAWN_IN * (domains[k].1 - domains[k].0) / (centre[k] - extents[k].0);
+    let part = share(0).max(share(1)).min(0.5);
+    corners.map(|corner| [0, 1].map(|k| corner[k] + part * (centre[k] - corner[k])))
+}
+
 struct Fitted {
     surface: NurbsSurface,
     free: Mask,
@@ -139,7 +151,8 @@ fn fit(
     settings: &Settings,
 ) -> Result<Fitted, PasteError> {
     let (u, v) = refined.domain();
-    let polygon = Polygon::new(corners, [0.0; 2], [u, v]).map_err(|_| PasteError::ContourDegenerate)?;
+    let polygon = Polygon::new(&drawn_in(corners, [u, v]), [0.0; 2], [u, v])
+        .map_err(|_| PasteError::ContourDegenerate)?;
     let grid = CellGrid::new(refined.knots_u(), refined.knots_v());
     let mut cells = grid.met_by(&polygon);
     cells.unite(&grid.inside(&polygon));
