@@ -13,7 +13,7 @@
 
 mod access;
 mod bound;
-mod compose;
+pub(super) mod compose;
 mod curve;
 mod derived_curve;
 mod edge;
@@ -30,11 +30,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::edit;
 use super::exchange_structure::{ExchangeStructure, InstanceName};
 use super::reverse_index::ReverseIndex;
-use super::write::{LineEnding, RecordWriter};
+use super::write::RecordWriter;
 use crate::brep::FaceId;
 use crate::exchange::{Edit, NameAllocator, Patch, PatchError};
 use crate::model::{ChangeSet, Model, Origin};
-use crate::source::Span;
+use crate::source::{LineEnding, Span};
 use request::Requests;
 
 /// Why a change set cannot be written into this file.
@@ -91,6 +91,9 @@ pub enum LowerError {
     /// A new edge with a curve of its own has no curve in the parameters of any face.
     #[error("a new edge has no curve in the parameters of a face")]
     NoFaceOfEdge,
+    /// A new number beyond what a file can say.
+    #[error("a number of the result is beyond every finite one")]
+    NotFinite,
     /// New records have no place to go.
     #[error("the file has no data section for new records")]
     NoDataSection,
@@ -142,7 +145,7 @@ pub fn lower(structure: &ExchangeStructure, model: &Model, changes: &ChangeSet) 
 }
 
 /// Everything that grows while a change set is lowered.
-struct Lowering<'a> {
+pub(super) struct Lowering<'a> {
     structure: &'a ExchangeStructure,
     model: &'a Model,
     users: ReverseIndex,
@@ -170,7 +173,7 @@ struct Lowering<'a> {
 }
 
 impl<'a> Lowering<'a> {
-    fn new(structure: &'a ExchangeStructure, model: &'a Model) -> Self {
+    pub(super) fn new(structure: &'a ExchangeStructure, model: &'a Model) -> Self {
         Self {
             structure,
             model,
@@ -193,7 +196,7 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    fn finish(mut self) -> Result<Patch, LowerError> {
+    pub(super) fn finish(mut self) -> Result<Patch, LowerError> {
         let appended = edit::append(self.structure, self.appended).ok_or(LowerError::NoDataSection)?;
         self.edits.extend(appended);
         Patch::new(self.structure.source().bytes().len(), self.edits)
@@ -229,7 +232,10 @@ impl<'a> Lowering<'a> {
     }
 
     /// Appends a record `#n=body;` and gives its name.
-    fn append(&mut self, body: &compose::Body) -> Result<InstanceName, LowerError> {
+    pub(super) fn append(&mut self, body: &compose::Body) -> Result<InstanceName, LowerError> {
+        if !body.is_finite() {
+            return Err(LowerError::NotFinite);
+        }
         let name = InstanceName(self.names.allocate()?);
         let mut writer = RecordWriter::instance(name, self.ending);
         body.write(&mut writer);
@@ -252,8 +258,6 @@ fn changed_twice(structure: &ExchangeStructure, error: PatchError) -> LowerError
 }
 
 fn instance_name(origin: Origin) -> Result<InstanceName, LowerError> {
-    match origin {
-        Origin::Instance(name) => Ok(InstanceName(name)),
-        Origin::DirectoryEntry(_) => Err(LowerError::ForeignOrigin { origin: origin.to_string() }),
-    }
+    let foreign = || LowerError::ForeignOrigin { origin: origin.to_string() };
+    origin.instance().map(InstanceName).ok_or_else(foreign)
 }
