@@ -3,7 +3,12 @@
 //!
 //! `cargo bench --bench scale`; figures in `docs/benchmarks.md`. Linux: it reads `/proc/self`.
 
-#![allow(missing_docs, clippy::unwrap_used, reason = "a benchmark that cannot go on stops")]
+#![allow(
+    missing_docs,
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a benchmark prints, and stops when it cannot go on"
+)]
 
 use std::f64::consts::{PI, TAU};
 
