@@ -5,7 +5,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use memchr::memchr2_iter;
+use memchr::{memchr2, memchr2_iter};
 
 /// A half-open byte range `[start, end)` of a [`Source`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
@@ -165,6 +165,43 @@ impl File {
     }
 }
 
+/// How lines end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LineEnding {
+    /// LF
+    Lf,
+    /// CR LF
+    CrLf,
+    /// CR
+    Cr,
+    /// The file has no line ends.
+    None,
+}
+
+impl LineEnding {
+    /// The ending of the first line.
+    #[must_use]
+    pub fn of(bytes: &[u8]) -> Self {
+        match memchr2(b'\n', b'\r', bytes) {
+            None => Self::None,
+            Some(at) if bytes[at] == b'\n' => Self::Lf,
+            Some(at) if bytes.get(at + 1) == Some(&b'\n') => Self::CrLf,
+            Some(_) => Self::Cr,
+        }
+    }
+
+    /// Its characters.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Lf => "\n",
+            Self::CrLf => "\r\n",
+            Self::Cr => "\r",
+            Self::None => "",
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -178,6 +215,14 @@ mod tests {
         assert_eq!(at(5), Position { line: 3, column: 1 });
         assert_eq!(at(7), Position { line: 4, column: 1 });
         assert_eq!(at(8), Position { line: 4, column: 2 });
+    }
+
+    #[test]
+    fn the_first_line_tells_the_ending() {
+        assert_eq!(LineEnding::of(b"a\r\nb\n"), LineEnding::CrLf);
+        assert_eq!(LineEnding::of(b"a\rb"), LineEnding::Cr);
+        assert_eq!(LineEnding::of(b"a\nb"), LineEnding::Lf);
+        assert_eq!(LineEnding::of(b"ab"), LineEnding::None);
     }
 
     #[test]

@@ -5,6 +5,21 @@ use std::path::Path;
 mod bodies {
     include!("../fuzz/bodies/p21_tile.rs");
     include!("../fuzz/bodies/p21_edit_locality.rs");
+    include!("../fuzz/bodies/iges_cards.rs");
+    include!("../fuzz/bodies/iges_global.rs");
+    include!("../fuzz/bodies/iges_parameters.rs");
+
+    /// A name and a body that must not panic.
+    pub type Target = (&'static str, fn(&[u8]));
+
+    /// All targets.
+    pub const ALL: [Target; 5] = [
+        ("p21_tile", p21_tile),
+        ("p21_edit_locality", p21_edit_locality),
+        ("iges_cards", iges_cards),
+        ("iges_global", iges_global),
+        ("iges_parameters", iges_parameters),
+    ];
 }
 
 /// Mutations of each seed.
@@ -15,7 +30,7 @@ fn seeds() -> Vec<Vec<u8>> {
     let mut paths: Vec<_> =
         std::fs::read_dir(folder).expect("the seeds are there").flatten().map(|e| e.path()).collect();
     paths.sort();
-    assert!(paths.len() >= 4, "seeds are missing");
+    assert!(paths.len() >= 7, "seeds are missing");
     paths.iter().map(|path| std::fs::read(path).expect("readable")).collect()
 }
 
@@ -31,7 +46,7 @@ impl Random {
 
 /// Replaces, removes, doubles or moves a few bytes.
 fn mutate(seed: &[u8], random: &mut Random) -> Vec<u8> {
-    const LURES: &[u8] = b"'();,#=/*$.&! \n\r0E\"\\";
+    const LURES: &[u8] = b"'();,#=/*$.&! \n\r0E\"\\HDP@_19-";
     let mut bytes = seed.to_vec();
     for _ in 0..=random.below(4) {
         let at = random.below(bytes.len());
@@ -54,12 +69,10 @@ fn mutate(seed: &[u8], random: &mut Random) -> Vec<u8> {
 fn fuzz_bodies_hold_on_seeds_and_their_mutations() {
     let mut random = Random(7);
     for seed in seeds() {
-        bodies::p21_tile(&seed);
-        bodies::p21_edit_locality(&seed);
+        bodies::ALL.iter().for_each(|(_, body)| body(&seed));
         for _ in 0..ROUNDS {
             let bytes = mutate(&seed, &mut random);
-            bodies::p21_tile(&bytes);
-            bodies::p21_edit_locality(&bytes);
+            bodies::ALL.iter().for_each(|(_, body)| body(&bytes));
         }
     }
 }

@@ -105,7 +105,7 @@ fn snippets_are_read_as_the_standard_says() {
 
 #[test]
 fn every_corpus_file_keeps_the_laws() {
-    for path in support::corpus_step_files() {
+    for path in support::corpus_files(support::STEP) {
         let bytes = std::fs::read(&path).expect("readable");
         assert_laws(&bytes);
     }
@@ -145,7 +145,7 @@ fn naive_keyword_counts(bytes: &[u8]) -> BTreeMap<Vec<u8>, usize> {
 
 #[test]
 fn keyword_counts_agree_with_a_naive_count() {
-    for path in support::corpus_step_files() {
+    for path in support::corpus_files(support::STEP) {
         let bytes = std::fs::read(&path).expect("readable");
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         // The naive count knows nothing of containers, of scopes, and of files that stop in a record.

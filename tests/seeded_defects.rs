@@ -220,7 +220,9 @@ fn no_good_file_is_accused() {
         .filter(|path| path.extension().is_some_and(|extension| extension == "step"))
         .collect();
     files.extend(
-        support::corpus_step_files().into_iter().filter(|path| path.iter().any(|part| part == "step")),
+        support::corpus_files(support::STEP)
+            .into_iter()
+            .filter(|path| path.iter().any(|part| part == "step")),
     );
     files.sort();
     let mut accused = BTreeSet::new();

@@ -4,11 +4,8 @@
 pub fn p21_edit_locality(bytes: &[u8]) {
     use resurf::diagnostic::Diagnostics;
     use resurf::exchange::{NameAllocator, Patch};
-    use resurf::source::Source;
-    use resurf::step::{
-        ExchangeStructure, InstanceName, edit,
-        write::{LineEnding, RecordWriter},
-    };
+    use resurf::source::{LineEnding, Source};
+    use resurf::step::{ExchangeStructure, InstanceName, edit, write::RecordWriter};
 
     // The first byte chooses what goes; the rest is the file.
     let Some((choice, file)) = bytes.split_first() else { return };

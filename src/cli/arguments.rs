@@ -157,8 +157,10 @@ pub struct ConvertArguments {
 /// Formats that are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Target {
-    /// The input's own bytes
+    /// The own bytes of a STEP file
     Step,
+    /// The own bytes of an IGES file
+    Iges,
     /// Binary STL
     Stl,
     /// OFF

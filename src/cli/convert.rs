@@ -51,7 +51,7 @@ fn places(arguments: &ConvertArguments) -> Result<Vec<(PathBuf, Target)>, String
     for input in &arguments.inputs {
         let target = match arguments.to {
             Some(target) => target,
-            None if into_folder => Target::Step,
+            None if into_folder => own_format(input),
             None => by_extension(output)?,
         };
         let place = if into_folder {
@@ -60,7 +60,9 @@ fn places(arguments: &ConvertArguments) -> Result<Vec<(PathBuf, Target)>, String
             output.join(match target {
                 // What is written of a compressed file is plain.
                 Target::Step if is_compressed(&name) => name.with_extension("stp"),
-                Target::Step => name,
+                Target::Step | Target::Iges if own_format(&name) == target => name,
+                Target::Step => name.with_extension("step"),
+                Target::Iges => name.with_extension("igs"),
                 Target::Stl => name.with_extension("stl"),
                 Target::Off => name.with_extension("off"),
                 Target::ThreeMf => name.with_extension("3mf"),
@@ -81,6 +83,12 @@ fn places(arguments: &ConvertArguments) -> Result<Vec<(PathBuf, Target)>, String
     Ok(places)
 }
 
+/// The format that a file's name promises: STEP unless it says otherwise.
+fn own_format(name: &Path) -> Target {
+    let extension = name.extension().and_then(|e| e.to_str()).unwrap_or_default();
+    if Format::of_extension(extension) == Some(Format::Iges) { Target::Iges } else { Target::Step }
+}
+
 fn is_compressed(name: &Path) -> bool {
     let extension = name.extension().and_then(|e| e.to_str()).unwrap_or_default();
     ["stpz", "gz", "zip"].iter().any(|known| extension.eq_ignore_ascii_case(known))
@@ -93,9 +101,10 @@ fn by_extension(output: &Path) -> Result<Target, String> {
         "off" => Ok(Target::Off),
         "3mf" => Ok(Target::ThreeMf),
         "glb" => Ok(Target::Glb),
-        _ if Format::of_extension(&extension) == Some(Format::Step) => Ok(Target::Step),
+        _ if Format::of_extension(&extension).is_some() => Ok(own_format(output)),
         _ => Err(format!(
-            "the extension of {} is not one that is written: step, stp, stl, off, 3mf, glb; `--to` decides as well",
+            "the extension of {} is not one that is written: step, stp, igs, iges, stl, off, 3mf, glb; `--to` decides \
+             as well",
             output.display()
         )),
     }
@@ -109,7 +118,7 @@ fn one(
     printer: &mut Printer,
 ) -> Result<(), PartError> {
     match target {
-        Target::Step => copy(input, output, printer),
+        Target::Step | Target::Iges => copy(input, output, target, printer),
         Target::Stl => mesh(input, output, SideFormat::Stl, tolerance, printer),
         Target::Off => mesh(input, output, SideFormat::Off, tolerance, printer),
         Target::ThreeMf => mesh(input, output, SideFormat::ThreeMf, tolerance, printer),
@@ -119,8 +128,13 @@ fn one(
 
 /// Passes a part through. The disk takes longer than the look at the file, so the bytes are on their way while they
 /// are read; a file that turns out damaged leaves no file behind.
-fn copy(input: &Path, output: &Path, printer: &mut Printer) -> Result<(), PartError> {
+fn copy(input: &Path, output: &Path, target: Target, printer: &mut Printer) -> Result<(), PartError> {
     let unpacked = Read::unpack(input)?;
+    if (unpacked.format() == Format::Iges) != (target == Target::Iges) {
+        let message =
+            format!("the part is {}, and only its own bytes are written", unpacked.format().as_str());
+        return Err(PartError::Setting { key: "to", message });
+    }
     let source = unpacked.source().clone();
     let staged = std::thread::scope(|scope| {
         let staged = scope.spawn(|| Staged::write(output, source.bytes()));

@@ -1,7 +1,7 @@
 //! Recognises the format of a file, part or cloud; the one place that dispatches between formats.
 //!
 //! Holds no policy: what to do with a file that cannot be read is the caller's decision. STEP is read, plain,
-//! in a gzip stream or in a zip archive; everything else is recognised, so that a message can say what the
+//! in a gzip stream or in a zip archive, and IGES; everything else is recognised, so that a message can say what the
 //! file is.
 
 pub mod cloud;
@@ -12,7 +12,7 @@ use crate::diagnostic::Sink;
 use crate::exchange::Patch;
 use crate::model::{ChangeSet, Model, Origin};
 use crate::source::{Source, SourceTooLarge};
-use crate::step::{self, ExchangeStructure};
+use crate::{iges, step};
 pub use compressed::CompressedError;
 pub use proof::{CopyResiduals, ProofError};
 
@@ -87,12 +87,6 @@ fn is_iges(bytes: &[u8]) -> bool {
 /// Why a file is not read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum OpenError {
-    /// The format is known, and this version does not read it.
-    #[error("{} files are not read yet", .format.as_str())]
-    NotReadYet {
-        /// What the file is.
-        format: Format,
-    },
     /// Neither the content nor the extension is known.
     #[error("neither the content nor the extension is that of a known format")]
     Unknown,
@@ -112,7 +106,6 @@ impl OpenError {
     #[must_use]
     pub fn code(&self) -> &'static str {
         match self {
-            Self::NotReadYet { .. } => "document.not-read-yet",
             Self::Unknown => "document.unknown-format",
             Self::Empty => "document.empty",
             Self::TooLarge(_) | Self::Compressed(CompressedError::TooLarge { .. }) => "document.too-large",
@@ -126,6 +119,7 @@ impl OpenError {
 #[derive(Debug)]
 pub struct Unpacked {
     source: Source,
+    format: Format,
 }
 
 impl Unpacked {
@@ -134,12 +128,25 @@ impl Unpacked {
     pub fn source(&self) -> &Source {
         &self.source
     }
+
+    /// What the bytes are.
+    #[must_use]
+    pub fn format(&self) -> Format {
+        self.format
+    }
 }
 
 /// One file, parsed.
 #[derive(Debug)]
 pub struct Document {
-    structure: ExchangeStructure,
+    structure: Structure,
+}
+
+/// The exchange structure of either format.
+#[derive(Debug)]
+enum Structure {
+    Step(step::ExchangeStructure),
+    Iges(Box<iges::ExchangeStructure>),
 }
 
 impl Document {
@@ -153,7 +160,13 @@ impl Document {
 
     /// Parses an unpacked file. What is wrong inside it goes to the sink.
     pub fn parse(unpacked: Unpacked, sink: &mut dyn Sink) -> Self {
-        Self { structure: ExchangeStructure::parse(unpacked.source, sink) }
+        let structure = match unpacked.format {
+            Format::Iges => Structure::Iges(Box::new(iges::ExchangeStructure::parse(unpacked.source, sink))),
+            Format::Step | Format::Gzip | Format::Zip => {
+                Structure::Step(step::ExchangeStructure::parse(unpacked.source, sink))
+            }
+        };
+        Self { structure }
     }
 
     /// Recognises a file and takes it out of its container, if it has one.
@@ -170,9 +183,9 @@ impl Document {
             format => (bytes, format),
         };
         match format {
-            Some(Format::Step) => Ok(Unpacked { source: Source::new(bytes)? }),
-            Some(format) => Err(OpenError::NotReadYet { format }),
-            None => Err(OpenError::Unknown),
+            // A container in a container is nobody's part.
+            None | Some(Format::Gzip | Format::Zip) => Err(OpenError::Unknown),
+            Some(format) => Ok(Unpacked { source: Source::new(bytes)?, format }),
         }
     }
 
@@ -185,35 +198,61 @@ impl Document {
     /// Name of the format.
     #[must_use]
     pub fn format(&self) -> Format {
-        Format::Step
+        match self.structure {
+            Structure::Step(_) => Format::Step,
+            Structure::Iges(_) => Format::Iges,
+        }
     }
 
     /// The input bytes; those inside, when the file was compressed.
     #[must_use]
     pub fn source(&self) -> &Source {
-        self.structure.source()
+        match &self.structure {
+            Structure::Step(structure) => structure.source(),
+            Structure::Iges(structure) => structure.source(),
+        }
     }
 
     /// Whether a number may stand in the file that no finite one holds: a cheap look at the bytes, which errs on
     /// the side of yes.
     #[must_use]
     pub fn may_overflow(&self) -> bool {
-        step::may_overflow(self.source().bytes())
+        let bytes = self.source().bytes();
+        match self.structure {
+            Structure::Step(_) => crate::number::may_overflow(bytes),
+            Structure::Iges(_) => iges::may_overflow(bytes),
+        }
     }
 
     /// Line of a record, from 1; `None` when the file has no such record.
     #[must_use]
     pub fn line_of(&self, origin: Origin) -> Option<usize> {
-        let Origin::Instance(name) = origin else { return None };
-        let instance = self.structure.instance(step::InstanceName(name))?;
-        Some(self.source().position(instance.span().start).line)
+        let span = match (&self.structure, origin) {
+            (Structure::Step(structure), Origin::Instance(name)) => {
+                structure.instance(step::InstanceName(name))?.span()
+            }
+            (Structure::Iges(structure), Origin::DirectoryEntry(entry) | Origin::Member { entry, .. }) => {
+                structure.instance(iges::EntryNumber(entry))?.span()
+            }
+            _ => return None,
+        };
+        Some(self.source().position(span.start).line)
     }
 
     /// What the file means.
     pub fn model(&self, sink: &mut dyn Sink) -> Model {
-        self.structure.unresolved_references(sink);
-        self.structure.damaged_records(sink);
-        step::to_model::to_model(&self.structure, sink)
+        match &self.structure {
+            Structure::Step(structure) => {
+                structure.unresolved_references(sink);
+                structure.damaged_records(sink);
+                step::to_model(structure, sink)
+            }
+            Structure::Iges(structure) => {
+                structure.unresolved_pointers(sink);
+                structure.damaged_records(sink);
+                iges::to_model(structure, sink)
+            }
+        }
     }
 
     /// The byte edits that carry out a change set; the header gets its stamp when anything changes.
@@ -221,12 +260,13 @@ impl Document {
     /// # Errors
     /// [`LowerError`] naming the entity that cannot be written.
     pub fn lower(&self, model: &Model, changes: &ChangeSet, stamp: &Stamp) -> Result<Patch, LowerError> {
-        let patch = step::lower::lower(&self.structure, model, changes)?;
+        let Structure::Step(structure) = &self.structure else { return Err(LowerError::NotWrittenYet) };
+        let patch = step::lower(structure, model, changes)?;
         if patch.is_empty() {
             return Ok(patch);
         }
         let mut edits = patch.edits().to_vec();
-        edits.extend(step::edit::stamp(&self.structure, &stamp.time, &stamp.preprocessor));
+        edits.extend(step::edit::stamp(structure, &stamp.time, &stamp.preprocessor));
         Ok(Patch::new(self.source().bytes().len(), edits)?)
     }
 }
@@ -243,6 +283,9 @@ pub struct Stamp {
 /// A change that cannot be written in the file's format.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LowerError {
+    /// Changes of IGES files.
+    #[error("changes of IGES files are not written yet")]
+    NotWrittenYet,
     /// By the writer of STEP.
     #[error(transparent)]
     Step(#[from] step::lower::LowerError),

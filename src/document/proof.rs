@@ -1,6 +1,6 @@
 //! Digests and rigid copies of records, for the formats that have them: STEP alone.
 
-use super::Document;
+use super::{Document, Structure};
 use crate::digest::Digest;
 use crate::math::Affine;
 use crate::model::Origin;
@@ -17,6 +17,9 @@ pub enum ProofError {
     /// No record of a STEP file.
     #[error("{0} is no record of a STEP file, and others cannot be proved")]
     Foreign(Origin),
+    /// No STEP file.
+    #[error("records of an {0} file cannot be proved, only those of STEP files")]
+    Format(&'static str),
 }
 
 /// Digests of the records of one file.
@@ -27,22 +30,33 @@ pub struct RigidCopy<'a>(proof::RigidCopy<'a>);
 
 impl Document {
     /// Digests of the records of this file.
-    #[must_use]
-    pub fn digests(&self) -> Digests<'_> {
-        Digests(proof::Digests::new(&self.structure))
+    ///
+    /// # Errors
+    /// [`ProofError::Format`] for a file that is not STEP.
+    pub fn digests(&self) -> Result<Digests<'_>, ProofError> {
+        Ok(Digests(proof::Digests::new(self.provable()?)))
     }
 
     /// A comparison of records of this file with such of another.
-    #[must_use]
-    pub fn rigid_copy<'a>(&'a self, after: &'a Self) -> RigidCopy<'a> {
-        RigidCopy(proof::RigidCopy::new(&self.structure, &after.structure))
+    ///
+    /// # Errors
+    /// [`ProofError::Format`] unless both files are STEP.
+    pub fn rigid_copy<'a>(&'a self, after: &'a Self) -> Result<RigidCopy<'a>, ProofError> {
+        Ok(RigidCopy(proof::RigidCopy::new(self.provable()?, after.provable()?)))
+    }
+
+    fn provable(&self) -> Result<&crate::step::ExchangeStructure, ProofError> {
+        match &self.structure {
+            Structure::Step(structure) => Ok(structure),
+            Structure::Iges(_) => Err(ProofError::Format(self.format().as_str())),
+        }
     }
 }
 
 fn name(origin: Origin) -> Result<InstanceName, ProofError> {
     match origin {
         Origin::Instance(name) => Ok(InstanceName(name)),
-        Origin::DirectoryEntry(_) => Err(ProofError::Foreign(origin)),
+        Origin::DirectoryEntry(_) | Origin::Member { .. } | Origin::File => Err(ProofError::Foreign(origin)),
     }
 }
 

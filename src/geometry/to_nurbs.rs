@@ -6,7 +6,7 @@
 //! pieces. Offsets have no exact form and are refused.
 
 use super::nurbs::{KnotVector, NurbsCurve3, NurbsSurface};
-use super::{Curve, Surface};
+use super::{Composite, Curve, Surface};
 use crate::math::{Frame, Point3, Vector3};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -83,7 +83,8 @@ impl Curve {
                 let knots = knots.affine(1.0, shift).map_err(|_| bad.clone())?;
                 NurbsCurve3::new(knots, reversed.points().to_vec()).map_err(|_| bad)
             }
-            Self::Composite(_) | Self::Offset { .. } => Err(ToNurbsError::Kind { kind: self.kind() }),
+            Self::Composite(whole) => composite(whole, range),
+            Self::Offset { .. } => Err(ToNurbsError::Kind { kind: self.kind() }),
         }
     }
 }
@@ -206,6 +207,29 @@ impl ParameterLine {
             }
         }
     }
+}
+
+/// The segments that reach into a range, as one curve.
+fn composite(whole: &Composite<Curve>, (start, end): (f64, f64)) -> Result<NurbsCurve3, ToNurbsError> {
+    let bad = ToNurbsError::Range { start, end };
+    let (first, last) = whole.domain();
+    if !(first <= start && end <= last) {
+        return Err(bad);
+    }
+    let mut pieces = Vec::new();
+    for (segment, breaks) in whole.segments().iter().zip(whole.breaks().windows(2)) {
+        let (low, high) = (start.max(breaks[0]), end.min(breaks[1]));
+        if low >= high {
+            continue;
+        }
+        let (from, to) = (low - breaks[0], high - breaks[0]);
+        pieces.push(if segment.forward {
+            segment.curve.to_nurbs((segment.domain.0 + from, segment.domain.0 + to))?
+        } else {
+            segment.curve.to_nurbs((segment.domain.1 - to, segment.domain.1 - from))?.reversed()
+        });
+    }
+    NurbsCurve3::joined(&pieces, start).map_err(|_| bad)
 }
 
 /// `(w x, w y, w z, w)`.

@@ -10,7 +10,7 @@ use super::select_curve;
 use crate::brep::edge_samples::{EdgeRange, EdgeSampling, sample_curve};
 use crate::brep::sample_edge;
 use crate::math::{Point3, Vector3};
-use crate::model::{Model, Origin};
+use crate::model::Model;
 use crate::ops::deform::{Form, Line, Normal, Params, Path, Plan, plan};
 use crate::ops::force_density::Criteria;
 use crate::units::LengthUnit;
@@ -121,16 +121,15 @@ impl Source<'_> {
 fn curve_points(model: &Model, selector: Option<&CurveSelector>) -> Result<Vec<Point3<f64>>, String> {
     let brep = &model.brep;
     let plain = |chord| EdgeSampling { chord, per_span: CHORDS };
-    if let Some(CurveSelector::Instance(name)) = selector {
-        let wanted = Origin::Instance(*name);
-        let edge = model.origins.edges.iter().find(|(_, origin)| **origin == wanted).map(|(edge, _)| edge);
+    if let Some(CurveSelector::Record(wanted)) = selector {
+        let edge = model.origins.edges.iter().find(|(_, origin)| *origin == wanted).map(|(edge, _)| edge);
         if let Some(edge) = edge {
             let coarse = sample_edge(brep, edge, &plain(f64::INFINITY)).unwrap_or_default();
             let fine = sample_edge(brep, edge, &plain(CHORD * size(coarse.iter().map(|s| s.point))));
             let fine = fine.filter(|points| !points.is_empty());
             return fine
                 .map(|points| points.into_iter().map(|s| s.point).collect())
-                .ok_or_else(|| format!("the edge `#{name}` has no curve that was read"));
+                .ok_or_else(|| format!("the edge `{wanted}` has no curve that was read"));
         }
     }
     let found = select_curve::one(model, selector).map_err(|error| error.to_string())?;

@@ -4,7 +4,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, de};
 
 use super::file::LengthSetting;
-use super::selector::{NamePattern, Selector, instance};
+use super::selector::{NamePattern, RECORD, Selector, names_record};
+use crate::model::Origin;
+use crate::model::origin::ParseOriginError;
 use crate::units::Length;
 
 /// Carry the detail of one curve onto another.
@@ -137,8 +139,8 @@ pub enum DirectionWord {
 /// One curve.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CurveSelector {
-    /// The curve of a STEP instance name.
-    Instance(u64),
+    /// The curve of a record.
+    Record(Origin),
     /// The free curve of a name, as a glob.
     Name(NamePattern),
 }
@@ -154,11 +156,11 @@ struct CurveConditions {
 impl std::str::FromStr for CurveSelector {
     type Err = String;
 
-    /// A selector as typed on a command line: `#1042`, or a table as in a job file.
+    /// A selector as typed on a command line: `#1042` or `D57`, or a table as in a job file.
     fn from_str(text: &str) -> Result<Self, String> {
         let text = text.trim();
-        if text.starts_with('#') {
-            return instance(text).map(Self::Instance);
+        if names_record(text) {
+            return text.parse().map(Self::Record).map_err(|error: ParseOriginError| error.to_string());
         }
         super::read::read_value(text).map_err(|e| e.to_string())
     }
@@ -173,7 +175,7 @@ impl<'de> Deserialize<'de> for CurveSelector {
                 f.write_str("a curve: \"#1042\", or a table such as { name = \"RIM\" }")
             }
             fn visit_str<E: de::Error>(self, text: &str) -> Result<CurveSelector, E> {
-                instance(text).map(CurveSelector::Instance).map_err(E::custom)
+                text.parse().map(CurveSelector::Record).map_err(|error: ParseOriginError| E::custom(error))
             }
             fn visit_map<A: de::MapAccess<'de>>(self, map: A) -> Result<CurveSelector, A::Error> {
                 let conditions = CurveConditions::deserialize(de::value::MapAccessDeserializer::new(map))?;
@@ -191,8 +193,8 @@ impl JsonSchema for CurveSelector {
     fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
         let conditions = generator.subschema_for::<CurveConditions>();
         schemars::json_schema!({
-            "description": "One curve: an instance name, or a name.",
-            "anyOf": [{ "type": "string", "pattern": "^#[0-9]+$" }, conditions],
+            "description": "One curve: the name of a record, or a name.",
+            "anyOf": [{ "type": "string", "pattern": RECORD }, conditions],
         })
     }
 }

@@ -7,7 +7,7 @@ use super::part::Read;
 use super::report::{DiagnosticReport, OperationReport};
 use super::select::SelectError;
 use crate::diagnostic::Diagnostic;
-use crate::model::{ChangeSet, Model};
+use crate::model::{ChangeSet, Model, Origin};
 use crate::ops::OperationError;
 use crate::ops::constrained_scale::plan::HeldPiece;
 use crate::source::Source;
@@ -55,10 +55,10 @@ pub enum OperateError {
         reason: String,
     },
     /// No curve has the name.
-    #[error("source.region.curve: #{name} is no curve that was read")]
+    #[error("source.region.curve: {name} is no curve that was read")]
     NoCurve {
-        /// The name.
-        name: u64,
+        /// Its record.
+        name: Origin,
     },
     /// A line of a deformation cannot be had.
     #[error("{key}: {reason}")]

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::failure::PartError;
 use super::output::FileError;
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity};
-use crate::document::{Document, Unpacked};
+use crate::document::{Document, Format, Unpacked};
 use crate::model::Model;
 use crate::source::Source;
 
@@ -19,8 +19,16 @@ pub struct Read {
 }
 
 /// Codes of files that cannot be trusted to be whole: what is missing may be what the job is about.
-const DAMAGE: [&str; 4] =
-    ["step.truncated", "step.not-exchange-structure", "step.compressed", "step.not-finite"];
+const DAMAGE: [&str; 8] = [
+    "step.truncated",
+    "step.not-exchange-structure",
+    "step.compressed",
+    "step.not-finite",
+    "iges.truncated",
+    "iges.not-iges",
+    "iges.missing-section",
+    "iges.not-finite",
+];
 
 impl Read {
     /// Reads a file from its place.
@@ -98,6 +106,26 @@ impl Read {
             fact.message,
             place.unwrap_or_default()
         ))
+    }
+
+    /// Refuses an output whose name promises another format than the file has.
+    ///
+    /// # Errors
+    /// [`PartError::Setting`].
+    pub fn refuse_other_format(&self, output: &Path) -> Result<(), PartError> {
+        let found = self.document.format();
+        let extension = output.extension().and_then(|e| e.to_str()).unwrap_or_default();
+        match Format::of_extension(extension) {
+            Some(promised) if promised != found => {
+                let [found, promised] = [found, promised].map(Format::as_str);
+                let message = format!(
+                    "{} would be {promised}, and the part is {found}, in which it is written",
+                    output.display()
+                );
+                Err(PartError::Setting { key: "output", message })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Reads what the file means only if a number beyond the finite ones may stand in it: in a file that is

@@ -5,7 +5,9 @@ use serde::Deserialize;
 use serde::de::{self, Deserializer};
 
 use super::file::LengthSetting;
-use super::selector::{Selector, instance};
+use super::selector::Selector;
+use crate::model::Origin;
+use crate::model::origin::ParseOriginError;
 use crate::units::{Angle, Length};
 
 /// Carry a freeform feature from one face onto another, changing nothing outside the feature.
@@ -209,7 +211,7 @@ pub enum RegionSetting {
     /// A polyline in space.
     Contour(Vec<[LengthSetting; 3]>, Option<PlaneSetting>),
     /// A closed curve of the file.
-    Curve(u64, Option<PlaneSetting>),
+    Curve(Origin, Option<PlaneSetting>),
 }
 
 /// A reference plane.
@@ -232,7 +234,7 @@ struct RegionKeys {
     polygon: Option<Vec<[f64; 2]>>,
     /// A closed polyline in space, which goes onto the surface along the normal of `plane`.
     contour: Option<Vec<[LengthSetting; 3]>>,
-    /// A closed curve of the source's file by its instance name, which goes onto the surface likewise.
+    /// A closed curve of the source's file by its record, which goes onto the surface likewise.
     curve: Option<String>,
     /// Reference plane. Left out: that of the contour itself.
     plane: Option<PlaneSetting>,
@@ -270,7 +272,8 @@ impl TryFrom<RegionKeys> for RegionSetting {
                 enough(points.len()).map(|()| Self::Contour(points, plane))
             }
             RegionKeys { r#loop: None, polygon: None, contour: None, curve: Some(curve), plane } => {
-                instance(&curve).map(|name| Self::Curve(name, plane))
+                let record = curve.parse().map_err(|error: ParseOriginError| error.to_string())?;
+                Ok(Self::Curve(record, plane))
             }
             _ => Err(
                 "expected exactly one of the keys `loop`, `polygon`, `contour`, `curve`; `plane` goes with \

@@ -182,9 +182,8 @@ fn region(model: &Model, words: &RegionSetting, unit: &LengthUnit) -> Result<Reg
 const CHORDS: usize = 16;
 
 /// Points along a curve of the file: an edge, or a curve that belongs to none.
-fn curve_points(model: &Model, name: u64) -> Result<Vec<Point3<f64>>, OperateError> {
+fn curve_points(model: &Model, wanted: Origin) -> Result<Vec<Point3<f64>>, OperateError> {
     let brep = &model.brep;
-    let wanted = Origin::Instance(name);
     let sampling = EdgeSampling { per_span: CHORDS, ..EdgeSampling::default() };
     let edge = brep
         .edges
@@ -200,6 +199,6 @@ fn curve_points(model: &Model, name: u64) -> Result<Vec<Point3<f64>>, OperateErr
             })
         }
     };
-    let none = || OperateError::NoCurve { name };
+    let none = || OperateError::NoCurve { name: wanted };
     Ok(samples.ok_or_else(none)?.into_iter().map(|sample| sample.point).collect())
 }

@@ -52,8 +52,8 @@ pub enum PlanError {
         /// The unknown name.
         name: String,
     },
-    /// The output's extension is that of another format.
-    #[error("output {} is not STEP; other formats are not written yet", .output.display())]
+    /// The output's extension is that of no format of parts.
+    #[error("output {} is neither STEP nor IGES; name it .step or .igs", .output.display())]
     OtherFormat {
         /// The output.
         output: PathBuf,
@@ -152,7 +152,7 @@ pub fn parts(job: &Job, folder: &Path) -> Result<Vec<Part>, PlanError> {
     for input in inputs {
         let output = folder.join(fill(&job.output, &input, folder)?);
         let extension = output.extension().and_then(|e| e.to_str()).unwrap_or_default();
-        if Format::of_extension(extension) != Some(Format::Step) {
+        if Format::of_extension(extension).is_none() {
             return Err(PlanError::OtherFormat { output });
         }
         if let Some(first) = outputs.insert(normal(&output), input.clone()) {
@@ -297,7 +297,7 @@ mod tests {
         assert!(matches!(plan(&["**/*.step"], "out/{stem}.step"), Err(PlanError::Clash { .. })));
         assert!(matches!(plan(&["a.step"], "./{stem}.{ext}"), Err(PlanError::OverInput { .. })));
         assert!(matches!(plan(&["a.step"], "o/{name}.step"), Err(PlanError::BadTemplate { .. })));
-        assert!(matches!(plan(&["a.step"], "o/{stem}.igs"), Err(PlanError::OtherFormat { .. })));
+        assert!(matches!(plan(&["a.step"], "o/{stem}.stl"), Err(PlanError::OtherFormat { .. })));
         assert!(matches!(plan(&["[a.step"], "o.step"), Err(PlanError::BadGlob { .. })));
     }
 }

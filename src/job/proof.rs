@@ -111,7 +111,7 @@ pub fn sheet(
         name: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
         sha256: sha256(document.source().bytes()).to_string(),
     };
-    let (mut old, mut new) = (before.1.digests(), after.1.digests());
+    let (mut old, mut new) = (before.1.digests()?, after.1.digests()?);
     let mut groups = Vec::with_capacity(held.len());
     for group in held {
         let mut entities = Vec::with_capacity(group.records.len());
@@ -200,12 +200,15 @@ pub fn verify(sheet: &ProofSheet, before: &Document, after: &Document) -> Verifi
 }
 
 fn verify_group(group: &GroupClaim, before: &Document, after: &Document, found: &mut Verification) {
+    let compared = || Ok::<_, ProofError>((before.digests()?, after.digests()?, before.rigid_copy(after)?));
+    let (mut old, mut new, mut copy) = match compared() {
+        Ok(compared) => compared,
+        Err(error) => return found.fault(error.to_string()),
+    };
     let motion = Affine::from(group.motion);
-    let (mut old, mut new) = (before.digests(), after.digests());
-    let mut copy = before.rigid_copy(after);
     for entity in &group.entities {
         found.entities += 1;
-        let Some(record) = Origin::parse(&entity.record) else {
+        let Ok(record) = entity.record.parse::<Origin>() else {
             found.fault(format!("{}: is no name of a record", entity.record));
             continue;
         };

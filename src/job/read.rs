@@ -126,6 +126,7 @@ mod tests {
     use super::*;
     use crate::job::file::{LengthSetting, Operation};
     use crate::job::scale_file::Hold;
+    use crate::model::Origin;
     use crate::units::Length;
 
     const HEAD: &str = "version = 1\ninputs = [\"a.step\"]\noutput = \"b.step\"\n";
@@ -155,7 +156,7 @@ mod tests {
                 "unknown value",
             ),
             (&format!("{scale}factors = [1,1,1]\nhold = [{{}}]"), "{}", "exactly one of the keys"),
-            (&format!("{scale}factors = [1,1,1]\nface = \"1042\""), "\"1042\"", "not an instance name"),
+            (&format!("{scale}factors = [1,1,1]\nface = \"1042\""), "\"1042\"", "not the name of a record"),
             (&format!("{scale}factors = [1,1,1]\nface = {{ colour = \"red\" }}"), "\"red\"", "not a colour"),
             (&format!("{scale}factors = [1,1,1]\nface = {{}}"), "{}", "an empty selector"),
             (&format!("{scale}factors = [1,1,1]\ncontinuity = 3"), "3", "expected 0, 1 or 2"),
@@ -181,7 +182,7 @@ mod tests {
         assert_eq!(job, read(json, Syntax::Json).expect("JSON"));
         let Operation::ConstrainedScale(scale) = &job.operation[0] else { panic!("a scaling") };
         assert_eq!(scale.factors.0, [1.0, 2.5, 3.0]);
-        assert_eq!(scale.hold, [Hold::Edge(7)]);
+        assert_eq!(scale.hold, [Hold::Edge(Origin::Instance(7))]);
         assert_eq!(scale.center.expect("a centre")[0], LengthSetting(Length::Metres(1e-3)));
     }
 }

@@ -98,6 +98,7 @@ fn go(
 ) -> Result<(), PartError> {
     watch(Stage::Read);
     let mut read = Read::file(&part.input)?;
+    read.refuse_other_format(&part.output)?;
     let result = changed_bytes(job, part, &mut read, stamp, watch, report);
     report.take_diagnostics(&read.diagnostics, read.document.source());
     let result = result?;

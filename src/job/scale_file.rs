@@ -5,6 +5,8 @@ use serde::Deserialize;
 
 use super::file::LengthSetting;
 use super::selector::Selector;
+use crate::model::Origin;
+use crate::model::origin::ParseOriginError;
 
 /// Scale faces, while held loops keep their shape and size and move rigidly.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
@@ -217,8 +219,8 @@ pub enum Hold {
     Near([LengthSetting; 3]),
     /// The inner loop of that number on the only face in scope, from 0.
     Index(usize),
-    /// The inner loop that uses an edge: `"#1042"`.
-    Edge(u64),
+    /// The inner loop that uses an edge: `"#1042"`, `"D43/5"`.
+    Edge(Origin),
     /// Faces, with what hangs on them.
     Face(Selector),
 }
@@ -247,7 +249,7 @@ struct HoldKeys {
     near: Option<[LengthSetting; 3]>,
     /// The inner loop of this number on the only face in scope, counted from 0.
     index: Option<usize>,
-    /// The inner loop that uses this edge, by its instance name: `"#1042"`.
+    /// The inner loop that uses this edge, by its record: `"#1042"`, `"D43/5"`.
     edge: Option<String>,
     /// Faces that are held, with all that hangs on them up to the inner loops of other faces.
     face: Option<Selector>,
@@ -271,7 +273,9 @@ impl TryFrom<HoldKeys> for Hold {
             (Some(LoopSet::Inner), None, None, None, None) => Ok(Self::Inner(InnerLoops { on, up_to })),
             (None, Some(point), None, None, None) => Ok(Self::Near(point)),
             (None, None, Some(index), None, None) => Ok(Self::Index(index)),
-            (None, None, None, Some(edge), None) => super::selector::instance(&edge).map(Self::Edge),
+            (None, None, None, Some(edge), None) => {
+                edge.parse().map(Self::Edge).map_err(|error: ParseOriginError| error.to_string())
+            }
             (None, None, None, None, Some(face)) => Ok(Self::Face(face)),
             _ => Err("expected exactly one of the keys `loops`, `near`, `index`, `edge`, `face`".to_owned()),
         }

@@ -135,8 +135,7 @@ fn by_index(model: &Model, faces: &[FaceId], index: usize) -> Result<HoldTarget,
     Ok(HoldTarget::Loop(found))
 }
 
-fn by_edge(model: &Model, faces: &[FaceId], name: u64) -> Result<HoldTarget, OperateError> {
-    let origin = Origin::Instance(name);
+fn by_edge(model: &Model, faces: &[FaceId], origin: Origin) -> Result<HoldTarget, OperateError> {
     let edges = |face: FaceId| model.brep.coedges_of(face).map(|c| (c, model.brep.coedges[c].edge));
     let names = |(coedge, edge)| {
         let oriented = model.origins.coedges[coedge] == origin;
@@ -146,7 +145,7 @@ fn by_edge(model: &Model, faces: &[FaceId], name: u64) -> Result<HoldTarget, Ope
     let found = faces.iter().flat_map(|&face| edges(face)).find_map(names);
     found
         .map(HoldTarget::Edge)
-        .ok_or_else(|| OperateError::Hold(format!("no edge of the faces in scope is `#{name}`")))
+        .ok_or_else(|| OperateError::Hold(format!("no edge of the faces in scope is `{origin}`")))
 }
 
 /// Distance of a point from the middle of a loop's vertices and curve points: of two loops, the one

@@ -68,7 +68,7 @@ fn candidates(faces: &[String]) -> String {
 /// [`SelectError`] with the nearest candidates.
 pub fn faces(model: &Model, selector: &Selector) -> Result<Vec<FaceId>, SelectError> {
     match selector {
-        Selector::Instance(name) => instance(model, *name),
+        Selector::Record(record) => of_record(model, *record),
         Selector::All(conditions) => all(model, conditions),
         Selector::Any(selectors) => {
             let mut found = BTreeSet::new();
@@ -107,19 +107,16 @@ pub fn describe(model: &Model, face: FaceId) -> String {
     format!("{}{quoted} {}", model.origins.faces[face], kind(model.brep.surface_of(face)))
 }
 
-fn instance(model: &Model, name: u64) -> Result<Vec<FaceId>, SelectError> {
+fn of_record(model: &Model, record: Origin) -> Result<Vec<FaceId>, SelectError> {
     let origins = &model.origins.faces;
-    if let Some((face, _)) = origins.iter().find(|(_, origin)| **origin == Origin::Instance(name)) {
+    if let Some((face, _)) = origins.iter().find(|(_, origin)| **origin == record) {
         return Ok(vec![face]);
     }
-    let number = |origin: &Origin| match origin {
-        Origin::Instance(number) => number.abs_diff(name),
-        Origin::DirectoryEntry(_) => u64::MAX,
-    };
-    let mut near: Vec<(u64, FaceId)> = origins.iter().map(|(face, origin)| (number(origin), face)).collect();
+    let mut near: Vec<(u64, FaceId)> =
+        origins.iter().map(|(face, origin)| (origin.distance(record), face)).collect();
     near.sort();
     let nearest = near.into_iter().take(NAMED).map(|(_, face)| describe(model, face)).collect();
-    Err(SelectError::NoMatch { what: format!("`#{name}`"), nearest })
+    Err(SelectError::NoMatch { what: format!("`{record}`"), nearest })
 }
 
 /// One condition on a face: its key, what it wants, and what each face has.

@@ -11,7 +11,7 @@ const NAMED: usize = 5;
 
 /// The one curve of a selector; the only free curve of the model when there is none.
 ///
-/// An instance name may be that of a curve or of an edge curve, whose own curve it then means, and of a curve that
+/// A record may be that of a curve or of an edge, whose own curve it then means, and of a curve that
 /// edges use: what may be done with it is the operation's business. Names are those of free curves.
 ///
 /// # Errors
@@ -19,8 +19,9 @@ const NAMED: usize = 5;
 pub(super) fn one(model: &Model, selector: Option<&CurveSelector>) -> Result<CurveId, SelectError> {
     let free = || model.free_curves.iter().copied();
     let (found, what): (Vec<CurveId>, String) = match selector {
-        Some(CurveSelector::Instance(name)) => {
-            return instance(model, *name).ok_or_else(|| no_match(model, format!("`#{name}`"), Some(*name)));
+        Some(CurveSelector::Record(record)) => {
+            return of_record(model, *record)
+                .ok_or_else(|| no_match(model, format!("`{record}`"), Some(*record)));
         }
         Some(CurveSelector::Name(pattern)) => {
             let glob = pattern.matcher();
@@ -39,8 +40,7 @@ pub(super) fn one(model: &Model, selector: Option<&CurveSelector>) -> Result<Cur
     }
 }
 
-fn instance(model: &Model, name: u64) -> Option<CurveId> {
-    let wanted = Origin::Instance(name);
+fn of_record(model: &Model, wanted: Origin) -> Option<CurveId> {
     let origins = &model.origins;
     let curve = origins.curves.iter().find(|(_, origin)| **origin == wanted).map(|(curve, _)| curve);
     let edge = || origins.edges.iter().find(|(_, origin)| **origin == wanted).map(|(edge, _)| edge);
@@ -52,13 +52,10 @@ fn name(model: &Model, curve: CurveId) -> &str {
     at.and_then(|at| model.free_curve_names.get(at)).map_or("", String::as_str)
 }
 
-fn no_match(model: &Model, what: String, near: Option<u64>) -> SelectError {
+fn no_match(model: &Model, what: String, near: Option<Origin>) -> SelectError {
     let mut free = model.free_curves.clone();
     if let Some(near) = near {
-        free.sort_by_key(|&curve| match model.origins.curves[curve] {
-            Origin::Instance(number) => number.abs_diff(near),
-            Origin::DirectoryEntry(_) => u64::MAX,
-        });
+        free.sort_by_key(|&curve| model.origins.curves[curve].distance(near));
     }
     let nearest = free.into_iter().take(NAMED).map(|curve| describe(model, curve)).collect();
     SelectError::NoCurve { what, nearest }

@@ -5,12 +5,14 @@ use schemars::JsonSchema;
 use serde::{Deserialize, de};
 
 use super::file::LengthSetting;
+use crate::model::Origin;
+use crate::model::origin::ParseOriginError;
 
 /// Faces of a part.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Selector {
-    /// The face of a STEP instance name.
-    Instance(u64),
+    /// The face of a record.
+    Record(Origin),
     /// Faces for which all keys hold.
     All(Box<Conditions>),
     /// Faces that any of these selects.
@@ -135,25 +137,22 @@ impl TryFrom<String> for ColourSetting {
     }
 }
 
-/// The number of an instance name.
-///
-/// # Errors
-/// A lower-case fragment when the text is not `#` with digits.
-pub fn instance(text: &str) -> Result<u64, String> {
-    let digits = text.strip_prefix('#').filter(|d| !d.is_empty() && d.bytes().all(|b| b.is_ascii_digit()));
-    digits
-        .and_then(|d| d.parse().ok())
-        .ok_or_else(|| format!("`{text}` is not an instance name; expected \"#\" and a number"))
+/// Names of records in a job file, as a pattern of its schema.
+pub(super) const RECORD: &str = "^(#[0-9]+|D[0-9]+(/[0-9]+)?)$";
+
+/// Whether a text of the command line is the name of a record, and no table.
+pub(super) fn names_record(text: &str) -> bool {
+    text.starts_with(['#', 'D'])
 }
 
 impl std::str::FromStr for Selector {
     type Err = String;
 
-    /// A selector as typed on a command line: `#1042`, or a table as in a job file.
+    /// A selector as typed on a command line: `#1042` or `D57`, or a table as in a job file.
     fn from_str(text: &str) -> Result<Self, String> {
         let text = text.trim();
-        if text.starts_with('#') {
-            return instance(text).map(Self::Instance);
+        if names_record(text) {
+            return text.parse().map(Self::Record).map_err(|error: ParseOriginError| error.to_string());
         }
         super::read::read_value(text).map_err(|e| e.to_string())
     }
@@ -170,7 +169,7 @@ impl<'de> Deserialize<'de> for Selector {
                 )
             }
             fn visit_str<E: de::Error>(self, text: &str) -> Result<Selector, E> {
-                instance(text).map(Selector::Instance).map_err(E::custom)
+                text.parse().map(Selector::Record).map_err(|error: ParseOriginError| E::custom(error))
             }
             fn visit_map<A: de::MapAccess<'de>>(self, map: A) -> Result<Selector, A::Error> {
                 let conditions = Conditions::deserialize(de::value::MapAccessDeserializer::new(map))?;
@@ -206,9 +205,9 @@ impl JsonSchema for Selector {
     fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
         let conditions = generator.subschema_for::<Conditions>();
         schemars::json_schema!({
-            "description": "Which faces: an instance name, conditions that must all hold, or a list of which any may.",
+            "description": "Which faces: the name of a record, conditions that must all hold, or a list of which any may.",
             "anyOf": [
-                { "type": "string", "pattern": "^#[0-9]+$" },
+                { "type": "string", "pattern": RECORD },
                 conditions,
                 { "type": "array", "minItems": 1, "items": { "$ref": "#/$defs/Selector" } },
             ],

@@ -4,10 +4,9 @@
 
 use super::exchange_structure::ExchangeStructure;
 use super::parameter::{Parameter, ParameterKind};
-use super::write::LineEnding;
 use super::{string, syntax};
 use crate::exchange::Edit;
-use crate::source::Span;
+use crate::source::{LineEnding, Span};
 
 /// Place of `time_stamp` in `FILE_NAME` (ISO 10303-21:2016 clause 8.2.2).
 const TIME_STAMP: usize = 1;

@@ -24,7 +24,7 @@ impl InstanceName {
     /// Reads `#12`, leading zeros allowed; `None` when it is no number or exceeds 64 bits.
     #[must_use]
     pub fn parse(text: &[u8]) -> Option<Self> {
-        match (text.first()?, syntax::number_at(text, 1)) {
+        match (text.first()?, crate::number::number_at(text, 1)) {
             (b'#', (Some(value), end)) if end == text.len() => Some(Self(value)),
             _ => None,
         }
@@ -204,7 +204,7 @@ impl<'a> Instance<'a> {
     #[must_use]
     pub fn name(&self) -> InstanceName {
         let start = self.record_span().start as usize;
-        let (name, _) = syntax::number_at(self.bytes(), start + 1);
+        let (name, _) = crate::number::number_at(self.bytes(), start + 1);
         InstanceName(name.expect("records are indexed under a name of 64 bits"))
     }
 

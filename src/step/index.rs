@@ -72,7 +72,7 @@ struct Head {
 
 /// Reads `#12 =` at `at`; `None` when something else stands there.
 fn record_head(bytes: &[u8], at: usize) -> Option<Head> {
-    let (name, end) = syntax::number_at(bytes, at + 1);
+    let (name, end) = crate::number::number_at(bytes, at + 1);
     let body = behind_equals(bytes, end).filter(|_| end > at + 1)?;
     Some(Head { name, body })
 }
@@ -80,7 +80,7 @@ fn record_head(bytes: &[u8], at: usize) -> Option<Head> {
 /// First byte behind the `#12 =` at `at` and white space; `None` when something else stands there.
 #[inline]
 pub(super) fn body_start(bytes: &[u8], at: usize) -> Option<usize> {
-    let end = syntax::digits_end(bytes, at + 1);
+    let end = crate::number::digits_end(bytes, at + 1);
     behind_equals(bytes, end).filter(|_| end > at + 1)
 }
 
@@ -94,7 +94,7 @@ fn behind_equals(bytes: &[u8], at: usize) -> Option<usize> {
 /// Whether `#12 =` stands at `at`. Comments are not looked for, so that searching with this takes linear time
 /// whatever the bytes.
 fn begins_record(bytes: &[u8], at: usize) -> bool {
-    let digits = syntax::digits_end(bytes, at + 1);
+    let digits = crate::number::digits_end(bytes, at + 1);
     bytes.get(at) == Some(&b'#')
         && digits > at + 1
         && bytes.get(syntax::whitespace_end(bytes, digits)) == Some(&b'=')

@@ -2,15 +2,12 @@
 
 mod alphabet;
 pub mod code;
-mod decimal;
 pub mod edit;
 pub mod entity;
 pub mod exchange_structure;
 mod index;
-pub mod literal;
 pub mod lower;
 mod name_table;
-mod overflow;
 pub mod parameter;
 pub mod proof;
 pub mod reverse_index;
@@ -26,7 +23,6 @@ pub use code::Code;
 pub use entity::Entity;
 pub use exchange_structure::{ExchangeStructure, Instance, InstanceName, SimpleRecord};
 pub use lower::{LowerError, lower};
-pub use overflow::may_overflow;
 pub use parameter::{Parameter, ParameterKind, Parameters};
 pub use reverse_index::ReverseIndex;
 pub use section::{Section, SectionKind};

@@ -122,7 +122,7 @@ impl<'a> Parameter<'a> {
     #[must_use]
     pub fn as_f64(&self) -> Option<f64> {
         match self.kind {
-            ParameterKind::Real | ParameterKind::Integer => super::literal::parse_real(self.text()),
+            ParameterKind::Real | ParameterKind::Integer => crate::number::parse_real(self.text()),
             _ => self.value()?.as_f64(),
         }
     }
@@ -131,7 +131,7 @@ impl<'a> Parameter<'a> {
     #[must_use]
     pub fn as_i64(&self) -> Option<i64> {
         match self.kind {
-            ParameterKind::Integer => super::literal::parse_integer(self.text()),
+            ParameterKind::Integer => crate::number::parse_integer(self.text()),
             _ => self.value()?.as_i64(),
         }
     }
@@ -151,7 +151,9 @@ impl<'a> Parameter<'a> {
     #[must_use]
     pub fn as_reference(&self) -> Option<InstanceName> {
         match self.kind {
-            ParameterKind::Reference => syntax::number_at(self.bytes, self.start + 1).0.map(InstanceName),
+            ParameterKind::Reference => {
+                crate::number::number_at(self.bytes, self.start + 1).0.map(InstanceName)
+            }
             _ => None,
         }
     }
@@ -328,7 +330,7 @@ fn typed_at(bytes: &[u8], end: usize, comments: Comments) -> (ParameterKind, usi
 /// What begins with `#`: a reference, or a constant of edition 3.
 #[inline]
 fn name_at(bytes: &[u8], at: usize) -> (ParameterKind, usize) {
-    let (name, end) = syntax::number_at(bytes, at + 1);
+    let (name, end) = crate::number::number_at(bytes, at + 1);
     if name.is_some() && !bytes.get(end).is_some_and(|&byte| syntax::is_keyword_byte(byte)) {
         return (ParameterKind::Reference, end);
     }

@@ -129,7 +129,7 @@ impl Iterator for References<'_> {
             let start = self.at;
             match self.bytes[start] {
                 b'#' => {
-                    self.at = syntax::digits_end(self.bytes, start + 1);
+                    self.at = crate::number::digits_end(self.bytes, start + 1);
                     if self.at > start + 1 {
                         let name = InstanceName::parse(&self.bytes[start..self.at]);
                         return Some((name, syntax::span(start, self.at)));

@@ -4,47 +4,12 @@
 //! schema: which attribute comes when is the caller's business, and a wrong nesting is a bug of the caller.
 
 use super::exchange_structure::InstanceName;
-use super::{literal, string};
+use super::string;
+use crate::number::format_real;
+use crate::source::LineEnding;
 
 /// Column behind which no token begins, as most writers have it (ISO 10303-21 itself sets no limit).
 const LINE_LENGTH: usize = 80;
-
-/// How lines end.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LineEnding {
-    /// LF
-    Lf,
-    /// CR LF
-    CrLf,
-    /// CR
-    Cr,
-    /// The file has no line ends: records are neither wrapped nor separated.
-    None,
-}
-
-impl LineEnding {
-    /// The ending of the first line.
-    #[must_use]
-    pub fn of(bytes: &[u8]) -> Self {
-        match memchr::memchr2(b'\n', b'\r', bytes) {
-            None => Self::None,
-            Some(at) if bytes[at] == b'\n' => Self::Lf,
-            Some(at) if bytes.get(at + 1) == Some(&b'\n') => Self::CrLf,
-            Some(_) => Self::Cr,
-        }
-    }
-
-    /// Its characters.
-    #[must_use]
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Lf => "\n",
-            Self::CrLf => "\r\n",
-            Self::Cr => "\r",
-            Self::None => "",
-        }
-    }
-}
 
 /// An open parenthesis.
 #[derive(Debug, Clone, Copy)]
@@ -58,7 +23,8 @@ struct Level {
 /// Builds the text of one record, or of one parameter.
 ///
 /// ```
-/// use resurf::step::{InstanceName, write::{LineEnding, RecordWriter}};
+/// use resurf::source::LineEnding;
+/// use resurf::step::{InstanceName, write::RecordWriter};
 /// let mut record = RecordWriter::instance(InstanceName(7), LineEnding::Lf);
 /// record.open("CARTESIAN_POINT").string("").open_list().real(0.5).real(-1.0).real(0.0).close().close();
 /// assert_eq!(record.finish(), "#7=CARTESIAN_POINT('',(0.5,-1.,0.));");
@@ -155,12 +121,12 @@ impl RecordWriter {
         self
     }
 
-    /// A real (see [`literal::format_real`]).
+    /// A real (see [`format_real`]).
     ///
     /// # Panics
     /// When the value is not finite.
     pub fn real(&mut self, value: f64) -> &mut Self {
-        self.token(&literal::format_real(value))
+        self.token(&format_real(value))
     }
 
     /// A list of reals.
@@ -270,13 +236,5 @@ mod tests {
         let mut late = RecordWriter::parameter(78, LineEnding::Lf);
         late.open_list().real(1.5).close();
         assert_eq!(late.finish(), "(\n1.5)");
-    }
-
-    #[test]
-    fn the_first_line_tells_the_ending() {
-        assert_eq!(LineEnding::of(b"a\r\nb\n"), LineEnding::CrLf);
-        assert_eq!(LineEnding::of(b"a\rb"), LineEnding::Cr);
-        assert_eq!(LineEnding::of(b"a\nb"), LineEnding::Lf);
-        assert_eq!(LineEnding::of(b"ab"), LineEnding::None);
     }
 }

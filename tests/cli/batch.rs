@@ -289,7 +289,7 @@ fn a_run_that_is_killed_at_any_moment_leaves_whole_files_only() {
 /// The whole corpus as one run, where it is there.
 #[test]
 fn every_part_of_the_corpus_comes_through_or_is_a_named_failure() {
-    let files = super::support::corpus_step_files();
+    let files = super::support::corpus_files(super::support::STEP);
     if files.is_empty() {
         return;
     }

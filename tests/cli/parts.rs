@@ -12,14 +12,6 @@ fn convert_to_the_same_format_keeps_every_byte() {
 }
 
 #[test]
-fn iges_is_recognised_and_said_to_be_unread() {
-    let record = format!("{:<72}S      1\n", "a drawing");
-    let fixture = Fixture::new().file("part.igs", record);
-    insta::assert_snapshot!(fixture.run(&["convert", "part.igs", "-o", "out.step"]));
-    assert_eq!(fixture.left(), ["part.igs"]);
-}
-
-#[test]
 fn what_is_no_part_is_refused() {
     let fixture = Fixture::new().file("notes.txt", "hello").file("empty.step", "");
     insta::assert_snapshot!("unknown", fixture.run(&["inspect", "notes.txt"]));

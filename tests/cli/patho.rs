@@ -39,7 +39,7 @@ const fn refused(name: &'static str, word: &'static str, says: &'static str) -> 
     Expected { name, word, read: 3, convert: 3, says }
 }
 
-const TABLE: [Expected; 33] = [
+const TABLE: [Expected; 43] = [
     silent("gz.stpZ"),
     silent("zip.stpZ"),
     silent("cr_only.stp"),
@@ -73,7 +73,21 @@ const TABLE: [Expected; 33] = [
     partly("bad_mults.stp", "refuse-face", "error[step.bad-geometry]: #56"),
     partly("dangling_ref.stp", "diagnose", "error[step.unresolved-reference]: #17: refers to #888888"),
     partly("self_ref.stp", "diagnose", "error[step.bad-topology]: #18"),
+    // The composites of the part that these were made of do not run head to tail, which is told of each of them.
+    remark("iges_crlf.igs", "read", TURNED),
+    remark("iges_cr.igs", "read", TURNED),
+    remark("iges_no_newlines.igs", "read", TURNED),
+    remark("iges_trailing_blanks_stripped.igs", "read", TURNED),
+    remark("iges_81cols.igs", "read+warn", "warning[iges.long-card]"),
+    remark("iges_delims_slash_hash.igs", "read", TURNED),
+    remark("iges_d_exponent.igs", "read", TURNED),
+    remark("iges_no_terminate.igs", "read+warn", "warning[iges.missing-terminate]"),
+    remark("iges_bad_T.igs", "read+warn", "warning[iges.terminate-counts]"),
+    // Its fields are numbered as if the standard counted one fewer.
+    partly("iges_compressed.igs", "read or refuse with a clear message", "error[iges.bad-compression]"),
 ];
+
+const TURNED: &str = "warning[iges.turned-piece]";
 
 fn ends(said: &str, code: u8) -> bool {
     said.starts_with(&format!("exit code: {code}\n"))
@@ -91,7 +105,6 @@ fn every_odd_file_ends_as_its_table_says() {
     let words: BTreeMap<&str, &str> = manifest
         .lines()
         .skip(1)
-        .filter(|line| !line.contains(".igs\t"))
         .filter_map(|line| Some((line.split('\t').next()?, line.split('\t').nth(2)?)))
         .collect();
     let table: BTreeMap<&str, &str> = TABLE.iter().map(|row| (row.name, row.word)).collect();
@@ -110,8 +123,12 @@ fn every_odd_file_ends_as_its_table_says() {
 
 /// Holds the commands to a row; `plain` is what a copy must be.
 fn holds(row: &Expected, bytes: &[u8], plain: &[u8]) {
-    let job = "version = 1\ninputs = [\"in/*\"]\noutput = \"out/{stem}.stp\"\n\
-               [[operation]]\nkind = \"constrained_scale\"\nfactors = [2, 2, 2]\n";
+    let extension = if row.name.ends_with(".igs") { "igs" } else { "stp" };
+    let job = format!(
+        "version = 1\ninputs = [\"in/*\"]\noutput = \"out/{{stem}}.{extension}\"\n\
+         [[operation]]\nkind = \"constrained_scale\"\nfactors = [2, 2, 2]\n"
+    );
+    let same = format!("same.{extension}");
     let input = format!("in/{}", row.name);
     let fixture = Fixture::new().file(&input, bytes).file("job.toml", job);
     for command in ["inspect", "check"] {
@@ -120,9 +137,9 @@ fn holds(row: &Expected, bytes: &[u8], plain: &[u8]) {
         let told = stderr(&said);
         assert!(told.contains(row.says) && told.is_empty() == row.says.is_empty(), "{command}: {said}");
     }
-    let said = fixture.run(&["convert", &input, "-o", "same.stp"]);
+    let said = fixture.run(&["convert", &input, "-o", &same]);
     assert!(ends(&said, row.convert), "convert {}: {said}", row.name);
-    let copy = std::fs::read(fixture.path("same.stp")).ok();
+    let copy = std::fs::read(fixture.path(&same)).ok();
     assert_eq!(copy.as_deref(), (row.convert == 0).then_some(plain), "{}", row.name);
     if row.read != 0 {
         let said = fixture.run(&["run", "job.toml"]);

@@ -150,7 +150,7 @@ fn every_solid_measures_what_open_cascade_measures_or_is_explained() {
     let mut wrong = Vec::new();
     let mut measured = 0;
     let all = std::env::var("RESURF_OCC_ALL").is_ok_and(|value| value == "1");
-    for path in support::corpus_step_files() {
+    for path in support::corpus_files(support::STEP) {
         let Some(file) = name(&path) else { continue };
         if !all && path.metadata().is_ok_and(|found| found.len() > EVERY_RUN) {
             continue;

@@ -2,10 +2,11 @@
 
 use proptest::prelude::*;
 use resurf::diagnostic::Diagnostics;
-use resurf::source::Source;
+use resurf::number::{format_real, parse_real};
+use resurf::source::{LineEnding, Source};
 use resurf::step::syntax::Tokens;
-use resurf::step::write::{LineEnding, RecordWriter};
-use resurf::step::{ExchangeStructure, InstanceName, literal, string};
+use resurf::step::write::RecordWriter;
+use resurf::step::{ExchangeStructure, InstanceName, string};
 
 /// Fragments that lead a reader astray more often than random bytes do.
 const FRAGMENTS: &[&str] = &[
@@ -96,9 +97,9 @@ proptest! {
     fn reals_read_back_to_the_same_bits(bits in any::<u64>()) {
         let value = f64::from_bits(bits);
         if value.is_finite() {
-            let text = literal::format_real(value);
+            let text = format_real(value);
             prop_assert!(text.contains('.') && !text.contains('e') && !text.contains('+'), "{}", text);
-            prop_assert_eq!(literal::parse_real(text.as_bytes()).map(f64::to_bits), Some(bits));
+            prop_assert_eq!(parse_real(text.as_bytes()).map(f64::to_bits), Some(bits));
         }
     }
 

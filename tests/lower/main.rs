@@ -247,7 +247,7 @@ fn corpus_parts_follow_a_rigid_motion_and_come_back_alike() {
     let turn = Matrix3::new(c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0);
     let map = Affine::about(&Point3::new(0.02, 0.01, 0.0), turn)
         .after(&Affine::translation(Vector3::new(0.5, 0.0, 1.0)));
-    for path in support::corpus_step_files() {
+    for path in support::corpus_files(support::STEP) {
         let part = read(std::fs::read(&path).expect("a file of the corpus"));
         let Some(changes) = image(&part.model, &all_faces(&part.model), &map) else { continue };
         if changes.is_empty() {

@@ -10,8 +10,16 @@ pub fn corpus() -> Option<PathBuf> {
         .filter(|folder| folder.is_dir())
 }
 
-/// Every STEP file of the corpus, variants included, in the order of their paths. Empty without a corpus.
-pub fn corpus_step_files() -> Vec<PathBuf> {
+/// Extensions of STEP files, compressed ones included.
+#[allow(dead_code, reason = "each test binary looks at the formats that it is about")]
+pub const STEP: &[&str] = &["stp", "step", "p21", "stpz"];
+/// Extensions of IGES files.
+#[allow(dead_code, reason = "each test binary looks at the formats that it is about")]
+pub const IGES: &[&str] = &["igs", "iges"];
+
+/// Every file of the corpus with one of the extensions, variants included, in the order of their paths. Empty without
+/// a corpus.
+pub fn corpus_files(extensions: &[&str]) -> Vec<PathBuf> {
     let Some(corpus) = corpus() else { return Vec::new() };
     let mut files: Vec<PathBuf> = walkdir::WalkDir::new(corpus)
         .into_iter()
@@ -19,7 +27,7 @@ pub fn corpus_step_files() -> Vec<PathBuf> {
         .filter(|path| {
             let extension =
                 path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-            matches!(extension.as_str(), "stp" | "step" | "p21" | "stpz")
+            extensions.contains(&extension.as_str())
         })
         .collect();
     files.sort();

@@ -6,7 +6,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::super::edit;
 use super::super::entity::Entity;
 use super::super::exchange_structure::{ExchangeStructure, InstanceName};
-use super::super::literal::format_real;
 use super::super::parameter::Parameter;
 use super::super::reverse_index::{anchored, references};
 use super::super::view::EntityView;
@@ -15,6 +14,7 @@ use super::compose::{Body, Inherited};
 use super::{LowerError, Lowering};
 use crate::geometry::Surface;
 use crate::geometry::nurbs::KnotVector;
+use crate::number::format_real;
 use crate::source::Span;
 
 impl<'a> Lowering<'a> {

@@ -4,11 +4,11 @@
 //! ellipses, by parameters on everything else, whose parameters carry no unit.
 
 use super::super::exchange_structure::InstanceName;
-use super::super::literal::format_real;
 use super::compose::{Body, Inherited, Value};
 use super::{LowerError, Lowering};
 use crate::geometry::{Composite, Curve, Segment, Trimmed};
 use crate::math::Vector3;
+use crate::number::format_real;
 
 impl Lowering<'_> {
     /// `TRIMMED_CURVE`.

@@ -4,9 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::exchange_structure::{Instance, InstanceName};
 use super::super::parameter::{Parameter, Parameters};
-use super::super::write::LineEnding;
 use crate::exchange::Edit;
-use crate::source::Span;
+use crate::source::{LineEnding, Span};
 
 /// New members on one line.
 const PER_LINE: usize = 8;

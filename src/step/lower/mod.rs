@@ -30,11 +30,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::edit;
 use super::exchange_structure::{ExchangeStructure, InstanceName};
 use super::reverse_index::ReverseIndex;
-use super::write::{LineEnding, RecordWriter};
+use super::write::RecordWriter;
 use crate::brep::FaceId;
 use crate::exchange::{Edit, NameAllocator, Patch, PatchError};
 use crate::model::{ChangeSet, Model, Origin};
-use crate::source::Span;
+use crate::source::{LineEnding, Span};
 use request::Requests;
 
 /// Why a change set cannot be written into this file.
@@ -252,8 +252,6 @@ fn changed_twice(structure: &ExchangeStructure, error: PatchError) -> LowerError
 }
 
 fn instance_name(origin: Origin) -> Result<InstanceName, LowerError> {
-    match origin {
-        Origin::Instance(name) => Ok(InstanceName(name)),
-        Origin::DirectoryEntry(_) => Err(LowerError::ForeignOrigin { origin: origin.to_string() }),
-    }
+    let foreign = || LowerError::ForeignOrigin { origin: origin.to_string() };
+    origin.instance().map(InstanceName).ok_or_else(foreign)
 }

@@ -98,9 +98,8 @@ pub(super) fn assemble(
     let mut occurrences = assembler.occurrences(given.roots);
     assembler.shapes(&occurrences);
     assembler.place(&mut occurrences);
-    let relation = |(at, used): (usize, &Occurrence)| match used.origin {
-        Origin::Instance(name) => Some((*assembler.placed_by.get(&InstanceName(name))?, at)),
-        Origin::DirectoryEntry(_) => None,
+    let relation = |(at, used): (usize, &Occurrence)| {
+        Some((*assembler.placed_by.get(&InstanceName(used.origin.instance()?))?, at))
     };
     let placed = occurrences.iter().enumerate().filter_map(relation).collect();
     Assembly { occurrences, placed }
@@ -373,9 +372,8 @@ impl Assembler<'_, '_> {
     /// Placements by mapped items alone, as older files write them: for each pair of products in file order.
     fn mapped_uses(&mut self, occurrences: &[Occurrence]) -> HashMap<(usize, usize), VecDeque<Affine>> {
         let mut uses: HashMap<(usize, usize), VecDeque<Affine>> = HashMap::new();
-        let by_relation = |used: &Occurrence| match used.origin {
-            Origin::Instance(name) => self.placed_by.contains_key(&InstanceName(name)),
-            Origin::DirectoryEntry(_) => false,
+        let by_relation = |used: &Occurrence| {
+            used.origin.instance().is_some_and(|name| self.placed_by.contains_key(&InstanceName(name)))
         };
         let parents: BTreeSet<usize> =
             occurrences.iter().filter(|used| !by_relation(used)).map(|used| used.parent).collect();

@@ -34,7 +34,7 @@ pub use curve2d::parameter_scale;
 
 use super::{ExchangeStructure, InstanceName};
 use crate::diagnostic::Sink;
-use crate::model::{Model, Origin};
+use crate::model::Model;
 use assembly::{Assembly, Given};
 use body::{Bodies, Holders};
 use presentation::Styled;
@@ -56,10 +56,8 @@ pub fn to_model(file: &ExchangeStructure, sink: &mut dyn Sink) -> Model {
     let mut bodies = Bodies::new(&products, holders);
     bodies.build(&mut builder, &roots);
     let Bodies { mut attributes, context, mut contexts, free_curves, free_curve_names, holders, .. } = bodies;
-    let known = builder.origins.bodies.iter().filter_map(|(body, origin)| match origin {
-        Origin::Instance(name) => Some((InstanceName(*name), body)),
-        Origin::DirectoryEntry(_) => None,
-    });
+    let bodies = builder.origins.bodies.iter();
+    let known = bodies.filter_map(|(body, origin)| Some((InstanceName(origin.instance()?), body)));
     let given = Given { scope, roots: &roots, items: &holders.items, bodies: &known.collect() };
     let Assembly { mut occurrences, placed } =
         assembly::assemble(&given, &mut products, &mut contexts, builder.sink);

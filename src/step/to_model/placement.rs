@@ -3,7 +3,7 @@
 use super::error::ReadError;
 use super::scope::Scope;
 use crate::math::{Frame, Point2, Point3, Vector2, Vector3};
-use crate::step::decimal;
+use crate::number::real_at;
 use crate::step::entity::Entity;
 use crate::step::syntax::{string_end, trivia_end};
 use crate::step::view::{real, reference, simple_parts};
@@ -119,7 +119,7 @@ fn plain_numbers<const N: usize>(instance: Instance<'_>, entity: Entity) -> Opti
         if index > 0 {
             at = behind(at, b',')?;
         }
-        let (value, end) = decimal::real_at(bytes, at)?;
+        let (value, end) = real_at(bytes, at)?;
         *number = value;
         at = trivia_end(bytes, end);
     }

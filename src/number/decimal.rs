@@ -2,11 +2,11 @@
 //!
 //! Freeform parts are mostly coordinates, and finding the end of one, checking its bytes and reading them are
 //! three passes elsewhere. Numbers that are not spelled as ISO 10303-21 has it, or whose value is not certain
-//! here, are left to [`literal`](super::literal).
+//! here, are left to [`parse_real`](super::parse_real).
 //!
 //! INVARIANT: a value that is given is the nearest one, ties to even: the same bits as the standard library's.
 
-use super::syntax::digits_at;
+use super::digits::digits_at;
 
 /// Decimal digits that 64 bits always hold.
 const MAX_DIGITS: usize = 19;
@@ -26,7 +26,8 @@ const RECIPROCALS: [(u32, u128); FIVES] = reciprocals();
 ///
 /// `None` for anything else, and for the few values that are not certain here.
 #[inline]
-pub(super) fn real_at(bytes: &[u8], at: usize) -> Option<(f64, usize)> {
+#[must_use]
+pub fn real_at(bytes: &[u8], at: usize) -> Option<(f64, usize)> {
     let negative = *bytes.get(at)? == b'-';
     let start = at + usize::from(negative || bytes[at] == b'+');
     let mut mantissa = 0;

@@ -1,13 +1,23 @@
-//! Numbers: text to value, and value to the shortest text that reads back to the same bits.
+//! Numbers as the formats spell them: text to value, and value to the shortest text that reads back to the same
+//! bits.
 //!
 //! [`format_real`] is the one function of the project that writes a real: its text is legal in
-//! ISO 10303-21 (a point is required, the exponent is an upper-case `E`) and in IGES.
+//! ISO 10303-21 (a point is required, the exponent is an upper-case `E`) and in IGES. Knows nothing of what stands
+//! around a number.
 
-/// Value of a number in the spelling of ISO 10303-21, or with the liberties that [`syntax`](super::syntax) takes.
+mod decimal;
+mod digits;
+mod overflow;
+
+pub use decimal::real_at;
+pub use digits::{digits_end, number_at};
+pub use overflow::may_overflow;
+
+/// Value of a number in the spelling of ISO 10303-21, or with the liberties that real files take.
 /// `None` when the text is no number or its value is not finite.
 #[must_use]
 pub fn parse_real(text: &[u8]) -> Option<f64> {
-    if let Some((value, end)) = super::decimal::real_at(text, 0)
+    if let Some((value, end)) = decimal::real_at(text, 0)
         && end == text.len()
     {
         return Some(value);
