@@ -14,8 +14,10 @@ use super::{occ, root};
 
 /// Relative difference of volume and area, and of the centroid against the root of the area.
 const AGREED: f64 = 1e-8;
-/// The same where an edge runs through a pole with parameter curves that come within a ten-millionth of it only.
+/// The same where an edge runs through a pole, with parameter curves that come within a ten-millionth of it only.
 const AT_POLE: f64 = 2e-6;
+/// The same where it is a spline, some millionths off the sphere.
+const NEAR_POLE: f64 = 5e-5;
 /// Chord of the meshes, in millimetres.
 const CHORD: f64 = 0.05;
 
@@ -38,8 +40,12 @@ fn wrong(file: &Path, exact: &Value) -> Vec<String> {
         let found = found.centroid().coords * mm;
         off.extend(found.iter().zip(centroid).map(|(own, other)| (own - number(other)) / area.sqrt()));
     }
-    let through = file.file_name().is_some_and(|name| name.to_string_lossy().starts_with("through_pole"));
-    let agreed = if through { AT_POLE } else { AGREED };
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    let agreed = match name.split('-').next() {
+        Some("through_pole") => AT_POLE,
+        Some("through_pole_nurbs") => NEAR_POLE,
+        _ => AGREED,
+    };
     let mut wrong: Vec<String> =
         off.iter().filter(|off| off.abs() > agreed).map(|off| format!("off by {off:e}")).collect();
     let errors = own_findings(&document, &model, 1.0).into_iter().filter(OwnFinding::is_error);
@@ -76,5 +82,5 @@ fn parts_made_by_open_cascade_measure_what_formulas_say() {
         count += 1;
     }
     assert!(all.is_empty(), "{}", all.join("\n"));
-    assert!(count >= 39, "{count}");
+    assert!(count == 42, "{count}");
 }

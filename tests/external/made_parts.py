@@ -116,7 +116,9 @@ def parts():
     beside = cut(sphere(12), cylinder(3, 40, (4, 0, -20)))
     yield "beside_pole", beside, drilled_sphere(12, 3, 4)
     yield "beside_pole_nurbs", BRepBuilderAPI_NurbsConvert(beside).Shape(), drilled_sphere(12, 3, 4)
-    yield "through_pole", cut(sphere(12), cylinder(3, 40, (3, 0, -20))), drilled_sphere(12, 3, 3)
+    through = cut(sphere(12), cylinder(3, 40, (3, 0, -20)))
+    yield "through_pole", through, drilled_sphere(12, 3, 3)
+    yield "through_pole_nurbs", BRepBuilderAPI_NurbsConvert(through).Shape(), drilled_sphere(12, 3, 3)
     capsule = BRepAlgoAPI_Fuse(cylinder(5, 20, (0, 0, 0)), sphere(5)).Shape()
     round_ends = (PI * 25 * 20 + 2 / 3 * PI * 125, 2 * PI * 5 * 20 + 2 * PI * 25 + PI * 25, None)
     yield "round_end", capsule, round_ends

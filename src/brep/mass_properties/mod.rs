@@ -369,10 +369,10 @@ impl<'a> Region<'a> {
         let (u, v) = ranges(surface, loops);
         let (across, along) = if along == Along::V { (u, v) } else { (v, u) };
         // A rough measure skips knots: finer pieces are not what it lacks.
-        if quadrature.pieces == usize::MAX {
-            if [across.0, across.1, along.0, along.1].iter().all(|x| x.is_finite()) {
-                column.cut_finely(across, along, &accuracy);
-            }
+        if quadrature.pieces == usize::MAX
+            && [across.0, across.1, along.0, along.1].iter().all(|x| x.is_finite())
+        {
+            column.cut_finely(across, along, &accuracy);
         }
         let width = across.1 - across.0;
         Ok(Self { surface, face, column, accuracy, pieces: quadrature.pieces, width })
