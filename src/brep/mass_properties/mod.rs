@@ -119,8 +119,8 @@ impl Quadrature {
 /// Samples of a surface's domain along each parameter, where no loop tells its size.
 const SAMPLES: usize = 4;
 /// Part of the width of a face, across the columns, by which a piece of its boundary may be found to move less or more
-/// than from its start to its end.
-const MISSED: f64 = 1e-9;
+/// than from its start to its end: what any rule is off by.
+const MISSED: f64 = 1e-6;
 /// Speed of a parameter line against that at the other end of a piece below which the piece ends beside a pole.
 const BESIDE_POLE: f64 = 1e-2;
 /// Part of a parameter's range that a straight piece must span to lie at a pole.
