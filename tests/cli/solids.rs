@@ -169,3 +169,78 @@ fn what_the_specification_refuses_is_refused_by_name_and_nothing_is_written() {
         assert!(!fixture.path("out.step").exists(), "{name}");
     }
 }
+
+/// Real shells with holes that end on planes and on freeform skins: their walls slide, or the sheet would be pierced.
+#[test]
+fn holes_of_real_shells_are_held_and_their_edges_meet() {
+    let Some(corpus) = super::support::corpus() else { return };
+    let slide = "wall = \"slide\"\n";
+    let parts = [
+        ("Amazing Hand Parts - R-Top_Shell.step", "", 8),
+        ("Amazing Hand Parts - Proximal_Shell.step", ", on = \"#417\"", 4),
+        ("Wrist_Roll_Pitch_SO101.step", ", on = \"#5159\"", 4),
+    ];
+    for (name, on, pieces) in parts {
+        let part = std::fs::read(corpus.join("step").join(name)).expect("a part");
+        let before = read(part.clone());
+        let hold = format!("factors = [1.1, 1.2, 1.25]\n{slide}hold = [{{ loops = \"inner\"{on} }}]");
+        let (after, report) = scaled(&part, &hold);
+        let measures = &report["parts"][0]["operations"][0]["measures"];
+        let groups = measures["groups"].as_array().expect("groups");
+        assert!(groups.len() <= pieces && groups.len() >= 2, "{name}: {}", groups.len());
+        for held in groups.iter().flat_map(|group| group["loops"].as_array().expect("loops")) {
+            assert!(held["rigid_deviation"].as_f64().expect("a number") <= 1e-12, "{name}: {held}");
+        }
+        let face = &measures["faces"][0];
+        let net = face["control_points"][1].as_u64().expect("a count");
+        assert!(net < 10_000, "{name}: {net}");
+        let known = radii(&before);
+        assert!(!radii(&after).is_empty() && radii(&after).iter().all(|r| known.contains(r)), "{name}");
+        let size = before.brep.vertices.iter().fold(0.0, |most: f64, (_, v)| most.max(v.point.coords.norm()));
+        assert!(gap(&after) <= 1.25 * gap(&before) + 1e-9 * size, "{name}: {} {}", gap(&before), gap(&after));
+    }
+}
+
+/// With walls that keep their lengths the bosses of the hood draw the outer skin through the inner one, which no check of
+/// topology sees.
+#[test]
+fn a_skin_that_is_drawn_through_another_is_refused() {
+    let Some(corpus) = super::support::corpus() else { return };
+    let part = std::fs::read(corpus.join("step/Amazing Hand Parts - R-Top_Shell.step")).expect("a part");
+    let fixture = Fixture::new()
+        .file("in.step", part)
+        .file("job.toml", job("factors = [1.1, 1.2, 1.25]\nhold = [{ loops = \"inner\" }]"));
+    let said = fixture.run(&["run", "job.toml"]);
+    assert!(said.starts_with("exit code: 4") && said.contains("scale.skins-too-close"), "{said}");
+    assert!(said.contains("#1609 and #1604"), "{said}");
+    assert!(!fixture.path("out.step").exists());
+}
+
+#[test]
+fn scalings_that_cannot_be_are_refused_and_nothing_is_written() {
+    let near = "hold = [{ loops = \"inner\" }]";
+    let refused = [
+        ("[0.0, 1.0, 1.0]", near, "is not a factor"),
+        ("[1.0, -2.0, 1.0]", near, "is not a factor"),
+        ("[1.0, 1.0, inf]", near, "is not a factor"),
+        ("[nan, 1.0, 1.0]", near, "is not a factor"),
+        ("[1.0, 1e9, 1.0]", near, "is not a factor"),
+        ("[1.1, 1.1]", near, "factors"),
+        ("[0.05, 0.05, 0.05]", near, "scale."),
+        ("[1.1, 1.2, 1.25]", "hold = [{ edge = \"#999999\" }]", "no edge of the faces in scope is `#999999`"),
+        ("[1.1, 1.2, 1.25]", "hold = [{ index = 7 }]", "`index` needs one face"),
+        ("[1.1, 1.2, 1.25]", "hold = [{ face = { name = \"NOBODY\" } }]", "NOBODY"),
+        ("[1.1, 1.2, 1.25]", "hold = [{ loops = \"inner\", up_to = 0.001 }]", "scale.nothing-to-hold"),
+        ("[1.1, 1.2, 1.25]", "mode = \"axes\"\nhold = [{ loops = \"inner\" }]", "needs `held_axes`"),
+        ("[1.1, 1.2, 1.25]", "hold = [{ face = { surface = \"b_spline\" } }]", "scale.hold-not-separated"),
+    ];
+    for (factors, hold, expected) in refused {
+        let fixture = Fixture::new().sample("door-solid/door-solid.step").file(
+            "job.toml",
+            job(&format!("factors = {factors}\n{hold}")).replace("in.step", "door-solid.step"),
+        );
+        let said = fixture.run(&["run", "job.toml"]);
+        assert!(!said.starts_with("exit code: 0") && said.contains(expected), "{factors} {hold}: {said}");
+        assert!(!fixture.path("out.step").exists(), "{factors} {hold}");
+    }
+}

@@ -11,7 +11,7 @@ use resurf::ops::constrained_scale::plan::{HoldTarget, LoopFilter, Params, Plan,
 use resurf::ops::constrained_scale::{Hold, Scaling};
 
 use super::models::{BOTTOM, FIRST_WALL, Hole, TOP, applied, polygon_hole, round_hole, thin_solid};
-use super::parts::{part, small};
+use super::parts::{door, hood, part, small, trunk};
 
 const GROW: [f64; 3] = [1.1, 1.2, 1.25];
 
@@ -91,6 +91,29 @@ fn a_thin_solid_stays_closed_and_its_hole_walls_rigid() {
         }
         assert_eq!(plan.measures.faces.len(), 2);
         assert!(plan.notes.is_empty());
+    }
+}
+
+#[test]
+fn door_trunk_lid_and_hood_stay_closed_as_solids() {
+    let centers = [[[0.25, 0.7], [0.72, 0.62]], [[0.22, 0.35], [0.78, 0.35]], [[0.3, 0.5], [0.7, 0.5]]];
+    for ((top, _), centers) in [door(), trunk(), hood()].into_iter().zip(centers) {
+        let holes = centers.map(|center| polygon_hole(&top, center, [0.05, 0.05]));
+        let model = thin_solid(&top, &holes, None);
+        let before = gap(&model);
+        for factors in [GROW, [2.0; 3]] {
+            let plan = planned(&model, &params(factors));
+            let scaled = applied(&model, &plan.change_set);
+            // Edges that are polygons scale with the part at worst.
+            let after = gap(&scaled);
+            assert!(after <= 2.0 * before + 1e-9, "{before:.3e} became {after:.3e}");
+            assert_eq!(plan.measures.groups.len(), 2);
+            for held in plan.measures.groups.iter().flat_map(|group| &group.loops) {
+                assert!(held.rigid_deviation <= 1e-12, "{held:?}");
+            }
+            let [pair] = plan.measures.skins.as_slice() else { panic!("{:?}", plan.measures.skins) };
+            assert!(pair.least_ratio > 0.8, "{pair:?}");
+        }
     }
 }
 

@@ -31,6 +31,7 @@ pub mod skins;
 pub mod slide;
 pub mod solve;
 mod stage;
+mod strips;
 pub mod task;
 
 pub use super::net::{cells, polygon, sampling};

@@ -1,4 +1,5 @@
-//! Bisection of all spans until held loops, border and each other lie far enough apart in control points.
+//! Bisection of all spans until held loops, border and each other lie far enough apart in control points; where that
+//! would cost too many, of those spans alone that lie between them.
 //!
 //! Geometry is never changed, only the net.
 
@@ -6,6 +7,7 @@ use super::ScaleError;
 use super::envelope::{Envelopes, GAP, Prepared};
 use super::sampling::mean_lengths;
 use super::scaling::Scaling;
+use super::strips::Strips;
 use crate::geometry::nurbs::{KnotVector, NurbsSurface};
 
 /// A net with room between its held loops.
@@ -21,6 +23,8 @@ pub struct Refined {
     pub near_pairs: Vec<(usize, usize)>,
 }
 
+/// Control points up to which all spans are bisected before strips are looked for.
+const MODERATE: usize = 10_000;
 /// A direction is bisected when its spans are longer than this part of the other direction's.
 const BISECT: f64 = 0.6;
 /// Points in each direction at which span lengths are measured.
@@ -29,8 +33,9 @@ const LENGTH_SAMPLES: usize = 17;
 /// Refines the net of a face until the gaps are wide enough and `least_level` is reached, or the next net would
 /// exceed the limit. `group` tells for each held loop which loops move with it: those may be near.
 ///
-/// All spans are bisected, as published. Where that does not make room within the limit, because the knots are
-/// uneven, only the longer spans are bisected.
+/// All spans are bisected, as published, while the net stays of moderate size. Where a loop is then still too near to the
+/// outline of a face within its surface, spans are bisected only in the strips between them. Where that does not make room within the limit, because
+/// the knots are uneven, only the longer spans are bisected.
 ///
 /// # Errors
 /// [`ScaleError::NetTooLarge`] for the input net, [`ScaleError::HoldCoversFace`],
@@ -48,12 +53,32 @@ pub fn refine(
     }
     // Refinement changes no geometry, so one measurement serves all levels.
     let lengths = mean_lengths(&face.surface, LENGTH_SAMPLES);
-    let all = |surface: &NurbsSurface, _: usize| bisected(surface, lengths, limit);
+    let moderate = limit.min(MODERATE);
+    let all = |limit: usize| move |surface: &NurbsSurface, _: usize| bisected(surface, lengths, limit);
+    let refined = run(face, group, least_level, scaling, all(moderate));
+    match refined {
+        Err(ScaleError::FeatureTooCloseToBoundary { .. }) => {}
+        Ok(refined) if !refined.near_pairs.is_empty() => {
+            return run(face, group, least_level, scaling, all(limit));
+        }
+        done => return done,
+    }
+    let rows = scaling.continuity.rows();
+    let strips = Strips { face, group, lengths, limit };
+    let (mut start, mut level) = (face.surface.clone(), 0);
+    while level < least_level
+        && let Some(finer) = bisected(&start, lengths, moderate)
+    {
+        (start, level) = (finer, level + 1);
+    }
+    let surface = strips.refined(&start);
+    let envelopes = Envelopes::new(face, &surface, rows);
+    if envelopes.near_border().is_none() {
+        let near_pairs = envelopes.near_pairs(group);
+        return Ok(Refined { surface, envelopes, level, near_pairs });
+    }
     let longer = |_: &NurbsSurface, level: usize| evened(&face.surface, lengths, level, limit);
-    run(face, group, least_level, scaling, all).or_else(|error| match error {
-        ScaleError::FeatureTooCloseToBoundary { .. } => run(face, group, least_level, scaling, longer),
-        other => Err(other),
-    })
+    run(face, group, least_level, scaling, longer)
 }
 
 /// Takes one net after the other from `next`, which gets the present net and the next level.

@@ -235,6 +235,23 @@ impl CellGrid {
         (self.u.n_cells(), self.v.n_cells())
     }
 
+    /// Control points that act on a cell, first and last, along one direction: 0 for `u`, 1 for `v`.
+    #[must_use]
+    pub fn support(&self, direction: usize, cell: usize) -> (usize, usize) {
+        self.axis(direction).support(cell)
+    }
+
+    /// Parameters at which a cell begins and ends along one direction.
+    #[must_use]
+    pub fn span(&self, direction: usize, cell: usize) -> (f64, f64) {
+        let knots = &self.axis(direction).knots;
+        (knots[cell], knots[cell + 1])
+    }
+
+    fn axis(&self, direction: usize) -> &Axis {
+        if direction == 0 { &self.u } else { &self.v }
+    }
+
     /// Every closed cell that the closed polygon meets, or comes nearer to than its margin.
     ///
     /// Each side is cut at all knot lines; the cut points and the middles of the pieces are classified, so

@@ -2,8 +2,8 @@
 //!
 //! In order: `target` names loops and faces, `flood` finds what hangs on them, `base` lays out the faces that bear
 //! them, `piece` gives every feature its motion, cut at a `wall` where its ends must part, `stretch` runs the
-//! numeric core on the faces between, `follow` says which element follows which motion, `clear` looks whether they
-//! stay clear of each other, and `assemble` makes each element's `image` once, however many faces share it.
+//! numeric core on the faces between, `follow` says which element follows which motion, `clear` and `opposite` look
+//! whether they stay clear of each other, and `assemble` makes each element's `image` once, however many faces share it.
 //!
 //! Faces outside the scope stay, and a face of the scope may not share an edge with them.
 //!
@@ -18,6 +18,7 @@ mod flood;
 mod follow;
 mod held;
 mod image;
+mod opposite;
 mod pcurve;
 mod piece;
 mod report;
@@ -117,6 +118,7 @@ pub fn plan(model: &Model, params: &Params) -> Result<Plan, OperationError> {
     notes.extend(report::notes(model, &held, &stretched, params.wall));
     let follow = follow::follow(model, &held, &stretched)?;
     clear::refuse_overlaps(model, &held, &follow, &plain)?;
+    notes.extend(opposite::refuse_too_close(model, &held, &stretched, &follow, &plain)?);
     let mut change_set = assemble::change_set(model, &faces, &held, &stretched, &follow, &plain)?;
     let measures = report::measure(model, &held, &stretched, &change_set)?;
     assemble::free_curves(model, &params.scope, &plain, &mut change_set, &mut notes);

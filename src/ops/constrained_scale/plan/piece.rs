@@ -250,7 +250,9 @@ impl Former<'_> {
         let mut pieces = Vec::new();
         for (part, axis) in self.joined(parts) {
             let motion = match axis {
-                Some(axis) => self.sliding(&part, whole, &axis)?,
+                Some(axis) => {
+                    self.sliding(&part, whole, &axis).map_err(|apart| self.planes_conflict(loops, apart))?
+                }
                 None => whole.clone(),
             };
             pieces.push(Piece { motion, part });
@@ -310,8 +312,8 @@ impl Former<'_> {
         out
     }
 
-    /// The motion of a part that slides along the walls it was cut from.
-    fn sliding(&self, part: &RigidPart, whole: &Motion, axis: &Vector3<f64>) -> Result<Motion, ScaleError> {
+    /// The motion of a part that slides along the walls it was cut from; how far it misses its planes where it does.
+    fn sliding(&self, part: &RigidPart, whole: &Motion, axis: &Vector3<f64>) -> Result<Motion, f64> {
         let on_plane = part.loops.iter().copied().find(|&k| self.plane(k).is_some());
         let reference = on_plane.unwrap_or(part.loops[0]);
         let slide = self.slide(reference, whole, axis);
@@ -320,7 +322,7 @@ impl Former<'_> {
         let amounts = vec![0.0; directions.len()];
         let motion = Motion { target, axis: *axis, directions, amounts, ..whole.clone() };
         match self.conflict(&motion, &part.loops) {
-            Some(apart) => Err(self.planes_conflict(&part.loops, apart)),
+            Some(apart) => Err(apart),
             None => Ok(motion),
         }
     }

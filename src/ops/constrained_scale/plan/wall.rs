@@ -118,8 +118,14 @@ fn distinct(all: impl Iterator<Item = Vector3<f64>>) -> Vec<Vector3<f64>> {
 
 fn rings_along(uses: &Uses<'_>, faces: &BTreeSet<FaceId>, axis: &Vector3<f64>) -> Vec<Ring> {
     let model = uses.model;
-    let fit: BTreeSet<FaceId> = faces.iter().copied().filter(|&f| goes_along(model, f, axis)).collect();
     let along = |edge: EdgeId| straight(model, edge).is_some_and(|own| parallel(&own, axis));
+    // A plane is no wall by itself: the floor of a counterbore lies along every direction in it.
+    let alone = |face: FaceId| {
+        let flat = matches!(model.brep.surface_of(face).read(), Some(Surface::Plane(_)));
+        flat && !uses.edges_of(face).any(along)
+    };
+    let fit: BTreeSet<FaceId> =
+        faces.iter().copied().filter(|&f| goes_along(model, f, axis) && !alone(f)).collect();
     let mut seen = BTreeSet::new();
     let mut found = Vec::new();
     for &first in &fit {
