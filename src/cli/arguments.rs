@@ -152,14 +152,56 @@ pub struct ConvertArguments {
     /// Greatest distance of a mesh from its part: a number in file units, or with a unit
     #[arg(long, value_name = "LENGTH")]
     pub tolerance: Option<crate::units::Length>,
+    /// Application protocol of a STEP file that is made of an IGES file
+    #[arg(long)]
+    pub schema: Option<SchemaWord>,
+    /// What solids become in an IGES file that is made of a STEP file
+    #[arg(long)]
+    pub solids: Option<SolidsWord>,
+}
+
+/// Application protocols of new STEP files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum SchemaWord {
+    /// ISO 10303-214
+    Ap214,
+    /// ISO 10303-242
+    Ap242,
+}
+
+impl From<SchemaWord> for crate::document::Schema {
+    fn from(word: SchemaWord) -> Self {
+        match word {
+            SchemaWord::Ap214 => Self::Ap214,
+            SchemaWord::Ap242 => Self::Ap242,
+        }
+    }
+}
+
+/// What solids become in new IGES files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum SolidsWord {
+    /// Manifold solid B-rep objects (186)
+    Brep,
+    /// Trimmed surfaces (144), for readers that know nothing else
+    Trimmed,
+}
+
+impl From<SolidsWord> for crate::document::Solids {
+    fn from(word: SolidsWord) -> Self {
+        match word {
+            SolidsWord::Brep => Self::Brep,
+            SolidsWord::Trimmed => Self::Trimmed,
+        }
+    }
 }
 
 /// Formats that are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Target {
-    /// The own bytes of a STEP file
+    /// STEP: the own bytes of a STEP file, or one made of an IGES file
     Step,
-    /// The own bytes of an IGES file
+    /// IGES: the own bytes of an IGES file, or one made of a STEP file
     Iges,
     /// Binary STL
     Stl,

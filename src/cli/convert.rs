@@ -1,13 +1,14 @@
-//! `resurf convert`: a part passed through as it is, or its mesh.
+//! `resurf convert`: a part passed through as it is, made anew in the other format, or its mesh.
 
 use std::path::{Path, PathBuf};
 
-use super::arguments::{ConvertArguments, Target};
+use super::arguments::{ConvertArguments, SchemaWord, SolidsWord, Target};
 use super::exit_code;
 use super::print::Printer;
 use super::show;
 use crate::diagnostic::Severity;
-use crate::document::Format;
+use crate::document::{Conversion, Format, Unpacked};
+use crate::job::convert::made;
 use crate::job::failure::PartError;
 use crate::job::file::SideFormat;
 use crate::job::judge::{chord, side_bytes};
@@ -27,7 +28,7 @@ pub fn convert(arguments: &ConvertArguments, printer: &mut Printer) -> u8 {
     };
     let mut codes = Vec::new();
     for (input, (output, target)) in arguments.inputs.iter().zip(&outputs) {
-        let result = one(input, output, *target, arguments.tolerance, printer);
+        let result = one(input, output, *target, arguments, printer);
         codes.push(match result {
             Ok(()) => exit_code::DONE,
             Err(error) => {
@@ -114,11 +115,15 @@ fn one(
     input: &Path,
     output: &Path,
     target: Target,
-    tolerance: Option<Length>,
+    arguments: &ConvertArguments,
     printer: &mut Printer,
 ) -> Result<(), PartError> {
+    let tolerance = arguments.tolerance;
+    if !matches!(target, Target::Step | Target::Iges) {
+        refuse_misplaced(arguments, None)?;
+    }
     match target {
-        Target::Step | Target::Iges => copy(input, output, target, printer),
+        Target::Step | Target::Iges => part(input, output, target, arguments, printer),
         Target::Stl => mesh(input, output, SideFormat::Stl, tolerance, printer),
         Target::Off => mesh(input, output, SideFormat::Off, tolerance, printer),
         Target::ThreeMf => mesh(input, output, SideFormat::ThreeMf, tolerance, printer),
@@ -126,15 +131,49 @@ fn one(
     }
 }
 
+/// A part in a format of parts: its own, or the other one.
+fn part(
+    input: &Path,
+    output: &Path,
+    target: Target,
+    arguments: &ConvertArguments,
+    printer: &mut Printer,
+) -> Result<(), PartError> {
+    let unpacked = Read::unpack(input)?;
+    let same = (unpacked.format() == Format::Iges) == (target == Target::Iges);
+    refuse_misplaced(arguments, (!same).then_some(target))?;
+    if same {
+        return copy(input, output, unpacked, printer);
+    }
+    let conversion = match target {
+        Target::Iges => Conversion::Iges(arguments.solids.unwrap_or(SolidsWord::Brep).into()),
+        _ => Conversion::Step(arguments.schema.unwrap_or(SchemaWord::Ap214).into()),
+    };
+    let mut read = Read::parse(unpacked);
+    read.look_for_overflow();
+    let name = output.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let bytes = read.refuse_damage().and_then(|()| made(&mut read, conversion, &name));
+    show::diagnostics(printer, input, &read);
+    Staged::write(output, &bytes?).and_then(Staged::commit).map_err(PartError::Output)
+}
+
+/// Refuses arguments that say nothing of what is made; `made` is the format of a part that is made of another.
+fn refuse_misplaced(arguments: &ConvertArguments, made: Option<Target>) -> Result<(), PartError> {
+    let refused = |key, message: &str| Err(PartError::Setting { key, message: message.to_owned() });
+    match (arguments.schema, arguments.solids) {
+        (Some(_), _) if made != Some(Target::Step) => {
+            refused("schema", "is for STEP files that are made of IGES files")
+        }
+        (_, Some(_)) if made != Some(Target::Iges) => {
+            refused("solids", "is for IGES files that are made of STEP files")
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Passes a part through. The disk takes longer than the look at the file, so the bytes are on their way while they
 /// are read; a file that turns out damaged leaves no file behind.
-fn copy(input: &Path, output: &Path, target: Target, printer: &mut Printer) -> Result<(), PartError> {
-    let unpacked = Read::unpack(input)?;
-    if (unpacked.format() == Format::Iges) != (target == Target::Iges) {
-        let message =
-            format!("the part is {}, and only its own bytes are written", unpacked.format().as_str());
-        return Err(PartError::Setting { key: "to", message });
-    }
+fn copy(input: &Path, output: &Path, unpacked: Unpacked, printer: &mut Printer) -> Result<(), PartError> {
     let source = unpacked.source().clone();
     let staged = std::thread::scope(|scope| {
         let staged = scope.spawn(|| Staged::write(output, source.bytes()));

@@ -6,6 +6,7 @@
 
 pub mod cloud;
 mod compressed;
+mod convert;
 pub mod proof;
 
 use crate::diagnostic::Sink;
@@ -14,6 +15,7 @@ use crate::model::{ChangeSet, Model, Origin};
 use crate::source::{Source, SourceTooLarge};
 use crate::{iges, step};
 pub use compressed::CompressedError;
+pub use convert::{Conversion, ConvertError, Schema, Solids, converted};
 pub use proof::{CopyResiduals, ProofError};
 
 /// What the bytes of a file are.
@@ -260,14 +262,25 @@ impl Document {
     /// # Errors
     /// [`LowerError`] naming the entity that cannot be written.
     pub fn lower(&self, model: &Model, changes: &ChangeSet, stamp: &Stamp) -> Result<Patch, LowerError> {
-        let Structure::Step(structure) = &self.structure else { return Err(LowerError::NotWrittenYet) };
-        let patch = step::lower(structure, model, changes)?;
-        if patch.is_empty() {
-            return Ok(patch);
-        }
-        let mut edits = patch.edits().to_vec();
-        edits.extend(step::edit::stamp(structure, &stamp.time, &stamp.preprocessor));
-        Ok(Patch::new(self.source().bytes().len(), edits)?)
+        let patch = match &self.structure {
+            Structure::Step(structure) => {
+                let patch = step::lower(structure, model, changes)?;
+                if patch.is_empty() {
+                    return Ok(patch);
+                }
+                let mut edits = patch.edits().to_vec();
+                edits.extend(step::edit::stamp(structure, &stamp.time, &stamp.preprocessor));
+                Patch::new(self.source().bytes().len(), edits)?
+            }
+            Structure::Iges(structure) => {
+                let mut changes = iges::lower(structure, model, changes)?;
+                if !changes.is_empty() {
+                    changes.stamp(structure, &stamp.time, &stamp.preprocessor);
+                }
+                iges::lower::patch(structure, &changes)?
+            }
+        };
+        Ok(patch)
     }
 }
 
@@ -283,12 +296,12 @@ pub struct Stamp {
 /// A change that cannot be written in the file's format.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LowerError {
-    /// Changes of IGES files.
-    #[error("changes of IGES files are not written yet")]
-    NotWrittenYet,
     /// By the writer of STEP.
     #[error(transparent)]
     Step(#[from] step::lower::LowerError),
+    /// By the writer of IGES.
+    #[error(transparent)]
+    Iges(#[from] iges::lower::LowerError),
     /// The header's stamp and an edit overlap.
     #[error(transparent)]
     Patch(#[from] crate::exchange::PatchError),

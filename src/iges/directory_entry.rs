@@ -139,6 +139,13 @@ impl Status {
         Some(Self { blank: pair(0)?, subordinate: pair(2)?, usage: pair(4)?, hierarchy: pair(6)? })
     }
 
+    /// The eight digits as a number.
+    #[must_use]
+    pub fn number(self) -> i32 {
+        let parts = [self.blank, self.subordinate, self.usage, self.hierarchy];
+        parts.into_iter().fold(0, |number, part| 100 * number + i32::from(part))
+    }
+
     /// The eight columns.
     #[must_use]
     pub fn text(self) -> String {

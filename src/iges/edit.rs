@@ -13,7 +13,7 @@ use super::directory_entry::{EntryNumber, Field};
 use super::exchange_structure::{ExchangeStructure, Instance};
 use super::global::place;
 use super::layout::{RecordChange, Relaid, relaid};
-use super::parameter::Parameter;
+use super::parameter::{Parameter, Place};
 use super::section::{Form, SectionKind};
 use super::string;
 use super::write::{NewEntity, ParameterText, directory_cards, laid_out, parameter_data};
@@ -49,9 +49,14 @@ impl Changes {
 
     /// Puts parameters in the place of one of an entity. Has no effect on a record that changes as a whole.
     pub fn replace(&mut self, instance: Instance<'_>, old: &Parameter<'_>, new: Vec<ParameterText>) {
+        self.replace_at(instance, old.start(), new);
+    }
+
+    /// Puts parameters in the place of the one that begins at a place.
+    pub(super) fn replace_at(&mut self, instance: Instance<'_>, place: Place, new: Vec<ParameterText>) {
         let values = || RecordChange::Values(BTreeMap::new());
         if let RecordChange::Values(values) = self.records.entry(instance.position()).or_insert_with(values) {
-            values.insert(old.start(), new);
+            values.insert(place, new);
         }
     }
 

@@ -91,11 +91,18 @@ impl<'a> EntityView<'a> {
         Trailing { associativities, properties: pointer_list(&mut cursor) }
     }
 
+    /// Every pointer among the fields, with its place: what the entity is made of.
+    #[must_use]
+    pub fn parts(&self) -> Vec<(EntryNumber, Parameter<'a>)> {
+        let mut found = Vec::new();
+        self.fields.pointers(&mut found);
+        found
+    }
+
     /// Every pointer among the parameters, with its place: those of the fields, then those behind them.
     #[must_use]
     pub fn pointers(&self) -> Vec<(EntryNumber, Parameter<'a>)> {
-        let mut found = Vec::new();
-        self.fields.pointers(&mut found);
+        let mut found = self.parts();
         let mut cursor = self.behind.clone();
         for _ in 0..2 {
             let count = cursor.next().and_then(|count| count.as_i64()).unwrap_or(0);

@@ -4,7 +4,7 @@ use super::operate::OperateError;
 use super::output::FileError;
 use super::report::Failure;
 use super::run::Stage;
-use crate::document::{CompressedError, LowerError, OpenError};
+use crate::document::{CompressedError, ConvertError, LowerError, OpenError};
 use crate::validate::ValidateError;
 
 /// The first thing that kept a part from being written.
@@ -39,6 +39,9 @@ pub enum PartError {
     /// The change cannot be written in this format.
     #[error("the result cannot be written: {0}")]
     Lower(#[from] LowerError),
+    /// The part cannot be written in the other format.
+    #[error("the part cannot be written in this format: {0}")]
+    Convert(#[from] ConvertError),
     /// The written bytes, read again, are not what was meant.
     #[error("the result does not pass the own checks: {}", .0.join("; "))]
     Check(Vec<String>),
@@ -159,9 +162,12 @@ impl PartError {
             Self::Setting { .. } => code::USAGE,
             Self::Operate(error) if error.code().starts_with("internal.") => code::INTERNAL,
             Self::Operate(error) if error.code().ends_with(".net-too-large") => code::RESOURCE,
-            Self::Operate(_) | Self::Lower(_) | Self::Mesh(_) | Self::Picture(_) | Self::Proof(_) => {
-                code::OPERATION
-            }
+            Self::Operate(_)
+            | Self::Lower(_)
+            | Self::Convert(_)
+            | Self::Mesh(_)
+            | Self::Picture(_)
+            | Self::Proof(_) => code::OPERATION,
             Self::NoVerdict(ValidateError::Missing { .. }) => code::VALIDATOR_MISSING,
             Self::NoVerdict(ValidateError::Scratch { .. }) => code::IO,
             Self::Internal => code::INTERNAL,
@@ -181,6 +187,7 @@ impl PartError {
             Self::Damaged(_) => "document.damaged",
             Self::Operate(error) => error.code(),
             Self::Lower(_) => "write.cannot-lower",
+            Self::Convert(_) => "write.cannot-convert",
             Self::Check(_) => "check.failed",
             Self::Mesh(_) => "mesh.failed",
             Self::Picture(_) => "picture.failed",

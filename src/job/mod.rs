@@ -5,6 +5,7 @@
 
 mod clock;
 pub mod contents;
+pub mod convert;
 pub mod deform_file;
 mod deform_operate;
 pub mod detail_file;

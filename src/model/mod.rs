@@ -9,6 +9,7 @@ pub mod assembly;
 pub mod balance;
 pub mod change_set;
 pub mod inventory;
+pub mod loss;
 pub mod mass;
 pub mod origin;
 
@@ -19,6 +20,7 @@ pub use assembly::{
 pub use balance::Balance;
 pub use change_set::ChangeSet;
 pub use inventory::Inventory;
+pub use loss::Loss;
 pub use mass::{Mass, Subject};
 pub use origin::{Origin, Origins};
 

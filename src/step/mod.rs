@@ -5,6 +5,7 @@ pub mod code;
 pub mod edit;
 pub mod entity;
 pub mod exchange_structure;
+pub mod from_model;
 mod index;
 pub mod lower;
 mod name_table;

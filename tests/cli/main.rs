@@ -6,6 +6,7 @@ mod cluster;
 mod deform;
 mod detail;
 mod diff;
+mod iges;
 mod jobs;
 mod locality;
 #[path = "../support/occ.rs"]

@@ -208,7 +208,7 @@ fn pair(
         let order = (0..flat.len()).map(|step| (next + step) % flat.len());
         let found = order
             .into_iter()
-            .find(|at| super::pcurve::fitted(surface, &flat[*at].1, &bit.piece, resolution).is_some());
+            .find(|at| super::pcurve::fit(surface, &flat[*at].1, &bit.piece, resolution).is_some());
         match found {
             Some(at) => {
                 bit.flat = Some(flat[at].clone());

@@ -15,11 +15,11 @@ use std::f64::consts::TAU;
 
 /// A range of a curve: what one curve entity is.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Piece {
+pub(in crate::iges) struct Piece {
     /// The curve, which may be endless or closed.
-    pub(super) curve: Curve,
+    pub(in crate::iges) curve: Curve,
     /// First and last parameter, ascending; infinite where a line has no end.
-    pub(super) range: (f64, f64),
+    pub(in crate::iges) range: (f64, f64),
 }
 
 impl Piece {
@@ -28,20 +28,20 @@ impl Piece {
         Self { curve, range }
     }
 
-    pub(super) fn start(&self) -> Point3<f64> {
+    pub(in crate::iges) fn start(&self) -> Point3<f64> {
         self.curve.point_wrapped(self.range.0)
     }
 
-    pub(super) fn end(&self) -> Point3<f64> {
+    pub(in crate::iges) fn end(&self) -> Point3<f64> {
         self.curve.point_wrapped(self.range.1)
     }
 
-    pub(super) fn middle(&self) -> Point3<f64> {
+    pub(in crate::iges) fn middle(&self) -> Point3<f64> {
         self.curve.point_wrapped(0.5 * (self.range.0 + self.range.1))
     }
 
     /// The curve with its own ends: trimmed, unless it has these already.
-    pub(super) fn bounded(self) -> Curve {
+    pub(in crate::iges) fn bounded(self) -> Curve {
         let Self { curve, range: (start, end) } = self;
         let same = curve.domain() == (start, end);
         let turn =
@@ -66,12 +66,16 @@ impl Piece {
 const TURN: f64 = 1e-9;
 
 /// The curve of an entity in the space that `within` leads to.
-pub(super) fn read(scope: &Scope<'_>, number: EntryNumber, within: &Affine) -> Result<Piece, ReadError> {
+pub(in crate::iges) fn read(
+    scope: &Scope<'_>,
+    number: EntryNumber,
+    within: &Affine,
+) -> Result<Piece, ReadError> {
     read_at(scope, number, within, &mut Budget::default())
 }
 
 /// The curves of an entity end to end: those of a composite one by one, any other alone.
-pub(super) fn pieces(
+pub(in crate::iges) fn pieces(
     scope: &Scope<'_>,
     number: EntryNumber,
     within: &Affine,
@@ -144,7 +148,7 @@ fn members(scope: &Scope<'_>, number: EntryNumber) -> Result<Vec<EntryNumber>, R
 }
 
 /// An error of an entity that another is made of.
-pub(super) fn in_entity(
+pub(in crate::iges) fn in_entity(
     scope: &Scope<'_>,
     field: &'static str,
     number: EntryNumber,
@@ -162,8 +166,22 @@ fn read_at(
     within: &Affine,
     budget: &mut Budget,
 ) -> Result<Piece, ReadError> {
+    let placed = scope.placed(scope.instance(number)?, within)?;
+    read_placed(scope, number, &placed, budget)
+}
+
+/// The curve of an entity without its own matrix.
+pub(in crate::iges) fn definition(scope: &Scope<'_>, number: EntryNumber) -> Result<Piece, ReadError> {
+    read_placed(scope, number, &Affine::identity(), &mut Budget::default())
+}
+
+fn read_placed(
+    scope: &Scope<'_>,
+    number: EntryNumber,
+    placed: &Affine,
+    budget: &mut Budget,
+) -> Result<Piece, ReadError> {
     let instance = scope.instance(number)?;
-    let placed = scope.placed(instance, within)?;
     let wrong = ReadError::WrongEntity { number, found: scope.name(number), expected: "a curve" };
     let entity = kind(instance).filter(|entity| entity.is_curve()).ok_or(wrong)?;
     let view = scope.view(number)?;
@@ -177,11 +195,11 @@ fn read_at(
             let (curve, range) = spline::curve(view.fields())?;
             Piece { curve: Curve::Nurbs(curve), range }
         }
-        Entity::CompositeCurve => return composite(scope, number, &placed, budget),
-        Entity::OffsetCurve => return offset(scope, &view, &placed, budget),
+        Entity::CompositeCurve => return composite(scope, number, placed, budget),
+        Entity::OffsetCurve => return offset(scope, &view, placed, budget),
         _ => return Err(ReadError::NotReadYet),
     };
-    piece.placed(&placed)
+    piece.placed(placed)
 }
 
 fn arc(scope: &Scope<'_>, view: &EntityView<'_>) -> Result<Piece, ReadError> {
@@ -218,7 +236,7 @@ fn conic_arc(view: &EntityView<'_>) -> Result<Piece, ReadError> {
 }
 
 /// Forms of copious data that are curves.
-pub(super) const PATHS: [i32; 4] = [11, 12, 13, 63];
+pub(in crate::iges) const PATHS: [i32; 4] = [11, 12, 13, 63];
 
 fn path(view: &EntityView<'_>) -> Result<Piece, ReadError> {
     if !PATHS.contains(&view.instance().entry().form) {

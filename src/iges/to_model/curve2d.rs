@@ -9,27 +9,27 @@ use crate::math::{Frame, Point2, Point3, Vector2, Vector3};
 
 /// A range of a curve in the plane, as a [`Piece`] is one in space.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Piece2d {
-    pub(super) curve: Curve2d,
-    pub(super) range: (f64, f64),
+pub(in crate::iges) struct Piece2d {
+    pub(in crate::iges) curve: Curve2d,
+    pub(in crate::iges) range: (f64, f64),
 }
 
 impl Piece2d {
     /// The piece without its third coordinate.
-    pub(super) fn flat(piece: &Piece) -> Result<Self, ReadError> {
+    pub(in crate::iges) fn flat(piece: &Piece) -> Result<Self, ReadError> {
         Ok(Self { curve: flat(&piece.curve)?, range: piece.range })
     }
 
-    pub(super) fn start(&self) -> Point2<f64> {
+    pub(in crate::iges) fn start(&self) -> Point2<f64> {
         self.curve.point_at(self.range.0)
     }
 
-    pub(super) fn end(&self) -> Point2<f64> {
+    pub(in crate::iges) fn end(&self) -> Point2<f64> {
         self.curve.point_at(self.range.1)
     }
 
     /// The piece in other parameters.
-    pub(super) fn mapped(&self, map: &ParameterMap) -> Result<Self, ReadError> {
+    pub(in crate::iges) fn mapped(&self, map: &ParameterMap) -> Result<Self, ReadError> {
         if map.is_identity() {
             return Ok(self.clone());
         }
@@ -39,7 +39,7 @@ impl Piece2d {
 
     /// The curve over the parameters of another, from `range.0` at its start to `range.1` at its end; as it is where its
     /// kind has no such form.
-    pub(super) fn over(self, range: (f64, f64)) -> Curve2d {
+    pub(in crate::iges) fn over(self, range: (f64, f64)) -> Curve2d {
         let (from, to) = self.range;
         let factor = (range.1 - range.0) / (to - from);
         let shift = range.0 - from * factor;

@@ -8,7 +8,7 @@ use crate::iges::view::{FieldError, OUT_OF_RANGE};
 
 /// Why geometry or topology cannot be read from an entity.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub(super) enum ReadError {
+pub(in crate::iges) enum ReadError {
     /// An entity, or a form of one, that the program carries only.
     #[error("not read yet")]
     NotReadYet,

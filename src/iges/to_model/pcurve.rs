@@ -4,29 +4,42 @@
 use super::curve::Piece;
 use super::curve2d::Piece2d;
 use super::surface::SurfaceRead;
-use crate::geometry::{Curve2d, Surface, Trimmed};
+use crate::geometry::{Curve2d, ParameterMap, Surface, Trimmed};
 use crate::math::{Point2, Point3};
 
 /// Part of an edge's size by which a parameter-space curve may leave it and still be its own: how badly it fits is for
 /// the checks to say.
 const OWN: f64 = 0.05;
 
+/// How a curve of the file becomes that of an edge in the model's parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::iges) struct Fit {
+    pub(in crate::iges) curve: Curve2d,
+    /// From the file's parameters to the model's.
+    pub(in crate::iges) map: ParameterMap,
+    /// Whether the file's curve runs against the edge's.
+    pub(in crate::iges) reversed: bool,
+}
+
 /// The curve of an edge in the parameters of a surface; `None` where it is nowhere near.
-pub(super) fn fitted(on: &SurfaceRead, flat: &Piece2d, edge: &Piece, resolution: f64) -> Option<Curve2d> {
+pub(in crate::iges) fn fit(on: &SurfaceRead, flat: &Piece2d, edge: &Piece, resolution: f64) -> Option<Fit> {
     let targets = [edge.start(), edge.middle(), edge.end()];
     let size = (targets[0] - targets[1]).norm() + (targets[1] - targets[2]).norm();
-    let mut best: Option<(f64, Piece2d)> = None;
+    let mut best: Option<(f64, Piece2d, ParameterMap, bool)> = None;
     for map in &on.parameters {
         let Ok(forward) = flat.mapped(map) else { continue };
-        for candidate in [Some(forward.clone()), reversed(&forward)].into_iter().flatten() {
+        let backward = reversed(&forward);
+        for (candidate, reversed) in [(Some(forward), false), (backward, true)] {
+            let Some(candidate) = candidate else { continue };
             let off = distance(&on.surface, &candidate, &targets);
-            if best.as_ref().is_none_or(|(least, _)| off < *least) {
-                best = Some((off, candidate));
+            if best.as_ref().is_none_or(|(least, ..)| off < *least) {
+                best = Some((off, candidate, *map, reversed));
             }
         }
     }
-    let (off, piece) = best?;
-    (off <= (OWN * size).max(resolution)).then(|| piece.over(edge.range))
+    let (off, piece, map, reversed) = best?;
+    let near = off <= (OWN * size).max(resolution);
+    near.then(|| Fit { curve: piece.over(edge.range), map, reversed })
 }
 
 /// Greatest distance of the ends, and of any point near the middle, from where they should be.
@@ -41,7 +54,7 @@ fn distance(surface: &Surface, piece: &Piece2d, [start, middle, end]: &[Point3<f
 }
 
 /// The piece run the other way.
-fn reversed(piece: &Piece2d) -> Option<Piece2d> {
+pub(in crate::iges) fn reversed(piece: &Piece2d) -> Option<Piece2d> {
     let (start, end) = piece.range;
     Some(match &piece.curve {
         Curve2d::Line { origin, direction } => {

@@ -10,34 +10,34 @@ use crate::iges::{Entity, EntryNumber, ExchangeStructure, Fields, Instance, sche
 use crate::math::Affine;
 
 /// Entities within entities that are followed before the chain counts as a cycle.
-pub(super) const MAX_DEPTH: usize = 32;
+pub(in crate::iges) const MAX_DEPTH: usize = 32;
 /// Parts that one piece of geometry may be made of.
-pub(super) const MAX_PARTS: usize = 100_000;
+pub(in crate::iges) const MAX_PARTS: usize = 100_000;
 
 /// The file and what is known of all of it.
-pub(super) struct Scope<'a> {
-    pub(super) file: &'a ExchangeStructure,
+pub(in crate::iges) struct Scope<'a> {
+    pub(in crate::iges) file: &'a ExchangeStructure,
     /// Distance below which points are one, in file units.
-    pub(super) resolution: f64,
+    pub(in crate::iges) resolution: f64,
     matrices: RefCell<HashMap<EntryNumber, Result<Affine, ReadError>>>,
 }
 
 impl<'a> Scope<'a> {
-    pub(super) fn new(file: &'a ExchangeStructure, resolution: f64) -> Self {
+    pub(in crate::iges) fn new(file: &'a ExchangeStructure, resolution: f64) -> Self {
         Self { file, resolution, matrices: RefCell::default() }
     }
 
-    pub(super) fn instance(&self, number: EntryNumber) -> Result<Instance<'a>, ReadError> {
+    pub(in crate::iges) fn instance(&self, number: EntryNumber) -> Result<Instance<'a>, ReadError> {
         self.file.instance(number).ok_or(ReadError::Dangling(number))
     }
 
     /// The view of an entity.
-    pub(super) fn view(&self, number: EntryNumber) -> Result<EntityView<'a>, ReadError> {
+    pub(in crate::iges) fn view(&self, number: EntryNumber) -> Result<EntityView<'a>, ReadError> {
         EntityView::of(self.instance(number)?).ok_or(ReadError::NotReadYet)
     }
 
     /// The view of an entity that must be of a type.
-    pub(super) fn view_of(
+    pub(in crate::iges) fn view_of(
         &self,
         number: EntryNumber,
         entity: Entity,
@@ -51,12 +51,12 @@ impl<'a> Scope<'a> {
     }
 
     /// Name of an entity's type; empty when the file does not have it.
-    pub(super) fn name(&self, number: EntryNumber) -> &'static str {
+    pub(in crate::iges) fn name(&self, number: EntryNumber) -> &'static str {
         self.file.instance(number).map(name).unwrap_or_default()
     }
 
     /// The matrix of an entity's own directory entry.
-    pub(super) fn matrix(&self, instance: Instance<'a>) -> Result<Affine, ReadError> {
+    pub(in crate::iges) fn matrix(&self, instance: Instance<'a>) -> Result<Affine, ReadError> {
         let pointer = instance.entry().transformation;
         let Some(number) = EntryNumber::from_pointer(pointer.into()) else { return Ok(Affine::identity()) };
         if let Some(known) = self.matrices.borrow().get(&number) {
@@ -68,25 +68,33 @@ impl<'a> Scope<'a> {
     }
 
     /// The matrix of an entity within those of what it is a part of.
-    pub(super) fn placed(&self, instance: Instance<'a>, within: &Affine) -> Result<Affine, ReadError> {
+    pub(in crate::iges) fn placed(
+        &self,
+        instance: Instance<'a>,
+        within: &Affine,
+    ) -> Result<Affine, ReadError> {
         let own = self.matrix(instance)?;
         Ok(if own.is_identity() { *within } else { within.after(&own) })
     }
 }
 
 /// Type of an entity.
-pub(super) fn kind(instance: Instance<'_>) -> Option<Entity> {
+pub(in crate::iges) fn kind(instance: Instance<'_>) -> Option<Entity> {
     Entity::from_type(instance.entry().entity_type)
 }
 
 /// Name of an entity's type, or `entity` for one that the table does not have.
-pub(super) fn name(instance: Instance<'_>) -> &'static str {
+pub(in crate::iges) fn name(instance: Instance<'_>) -> &'static str {
     let entry = instance.entry();
     schema::row(entry.entity_type, entry.form).map_or("entity", |row| row.name)
 }
 
 /// A field as a count of things that a file may have.
-pub(super) fn small(fields: &Fields<'_>, field: &'static str, most: usize) -> Result<usize, ReadError> {
+pub(in crate::iges) fn small(
+    fields: &Fields<'_>,
+    field: &'static str,
+    most: usize,
+) -> Result<usize, ReadError> {
     let count = fields.count(field)?;
     if count > most {
         let expected = format!("at most {most}");

@@ -17,7 +17,7 @@ pub(super) fn curve(fields: &Fields<'_>) -> Result<(NurbsCurve3, (f64, f64)), Re
 }
 
 /// The ranges of two parameters that are meant.
-pub(super) type Rectangle = ((f64, f64), (f64, f64));
+pub(in crate::iges) type Rectangle = ((f64, f64), (f64, f64));
 
 /// A B-spline surface and the rectangle of it that is meant.
 pub(super) fn surface(fields: &Fields<'_>) -> Result<(NurbsSurface, Rectangle), ReadError> {

@@ -15,17 +15,17 @@ use std::f64::consts::{PI, TAU};
 
 /// A surface entity as the model has it.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct SurfaceRead {
-    pub(super) surface: Surface,
+pub(in crate::iges) struct SurfaceRead {
+    pub(in crate::iges) surface: Surface,
     /// The rectangle that the entity is, in the model's parameters; `None` where it is endless or closed in itself.
-    pub(super) bounds: Option<Rectangle>,
+    pub(in crate::iges) bounds: Option<Rectangle>,
     /// From the file's parameters to the model's. The first is what the standard says; files have the others too. None for
     /// a surface without parameters.
-    pub(super) parameters: Vec<ParameterMap>,
+    pub(in crate::iges) parameters: Vec<ParameterMap>,
     /// Whether the normal by the file's parameters is against the model's.
-    pub(super) turned: bool,
+    pub(in crate::iges) turned: bool,
     /// How far the surface is from the one that the file means; `None` where it is that.
-    pub(super) off: Option<f64>,
+    pub(in crate::iges) off: Option<f64>,
 }
 
 impl SurfaceRead {
@@ -49,7 +49,7 @@ impl SurfaceRead {
 }
 
 /// First `inner`, then `outer`.
-fn composed(outer: &ParameterMap, inner: &ParameterMap) -> ParameterMap {
+pub(in crate::iges) fn composed(outer: &ParameterMap, inner: &ParameterMap) -> ParameterMap {
     ParameterMap {
         linear: outer.linear * inner.linear,
         translation: outer.linear * inner.translation + outer.translation,
@@ -64,7 +64,7 @@ fn rectangle(map: &ParameterMap, ((u0, u1), (v0, v1)): Rectangle) -> Rectangle {
 }
 
 /// The surface of an entity in the space that `within` leads to.
-pub(super) fn read(
+pub(in crate::iges) fn read(
     scope: &Scope<'_>,
     number: EntryNumber,
     within: &Affine,
@@ -78,12 +78,21 @@ fn read_at(
     within: &Affine,
     depth: usize,
 ) -> Result<SurfaceRead, ReadError> {
+    let placed = scope.placed(scope.instance(number)?, within)?;
+    definition_at(scope, number, depth)?.placed(&placed)
+}
+
+/// The surface of an entity without its own matrix.
+pub(in crate::iges) fn definition(scope: &Scope<'_>, number: EntryNumber) -> Result<SurfaceRead, ReadError> {
+    definition_at(scope, number, MAX_DEPTH)
+}
+
+fn definition_at(scope: &Scope<'_>, number: EntryNumber, depth: usize) -> Result<SurfaceRead, ReadError> {
     let instance = scope.instance(number)?;
-    let placed = scope.placed(instance, within)?;
     let wrong = ReadError::WrongEntity { number, found: scope.name(number), expected: "a surface" };
     let entity = kind(instance).filter(|entity| entity.is_surface()).ok_or(wrong)?;
     let view = scope.view(number)?;
-    let read = match entity {
+    Ok(match entity {
         Entity::Plane => plane(&view)?,
         Entity::ParametricSplineSurface => whole(spline::parametric_surface(view.fields())?),
         Entity::RationalBSplineSurface => {
@@ -95,8 +104,7 @@ fn read_at(
         Entity::TabulatedCylinder => tabulated(scope, &view)?,
         Entity::OffsetSurface => offset(scope, &view, depth)?,
         _ => elementary(scope, &view, entity)?,
-    };
-    read.placed(&placed)
+    })
 }
 
 fn whole(surface: NurbsSurface) -> SurfaceRead {
@@ -153,15 +161,26 @@ fn revolution(scope: &Scope<'_>, view: &EntityView<'_>) -> Result<SurfaceRead, R
     // Six digits of a whole turn are one.
     let way = if way > TAU - TURN_ROUNDED { TAU } else { way };
     let bounds = ((from, from + way), profile.range);
-    // The file counts along the profile first, the model round the axis.
-    let swap = ParameterMap { linear: Matrix2::new(0.0, 1.0, 1.0, 0.0), translation: Vector2::zeros() };
     Ok(SurfaceRead {
         surface: Surface::Revolution { curve: Box::new(profile.curve), frame },
         bounds: Some(bounds),
-        parameters: vec![swap],
+        parameters: vec![swap()],
         turned: true,
         off: None,
     })
+}
+
+/// Parameters of a surface of revolution: the file counts along the profile first, the model round the axis.
+pub(in crate::iges) fn swap() -> ParameterMap {
+    ParameterMap { linear: Matrix2::new(0.0, 1.0, 1.0, 0.0), translation: Vector2::zeros() }
+}
+
+/// Parameters of a tabulated cylinder by the ranges of those of the model: the standard counts from 0 to 1 along the
+/// directrix and along the straight line; files count as the directrix does.
+pub(in crate::iges) fn along(u: (f64, f64), v: (f64, f64)) -> Vec<ParameterMap> {
+    let height = v.1 - v.0;
+    let unit = ParameterMap::stretch(u.1 - u.0, height, Vector2::new(u.0, v.0));
+    vec![unit, ParameterMap::stretch(1.0, height, Vector2::new(0.0, v.0))]
 }
 
 /// Angle that a whole turn may lack.
@@ -176,12 +195,10 @@ fn tabulated(scope: &Scope<'_>, view: &EntityView<'_>) -> Result<SurfaceRead, Re
         return Err(ReadError::ZeroVector { field: "end" });
     }
     let (start, end) = directrix.range;
-    // The standard counts from 0 to 1 along the directrix; files count as the directrix does.
-    let unit = ParameterMap::stretch(end - start, 1.0, Vector2::new(start, 0.0));
     Ok(SurfaceRead {
         surface: Surface::LinearExtrusion { curve: Box::new(directrix.curve), direction },
         bounds: Some(((start, end), (0.0, 1.0))),
-        parameters: vec![unit, ParameterMap::identity()],
+        parameters: along((start, end), (0.0, 1.0)),
         turned: false,
         off: None,
     })
@@ -267,7 +284,7 @@ fn elementary(scope: &Scope<'_>, view: &EntityView<'_>, entity: Entity) -> Resul
 }
 
 /// Elementary surfaces count angles in degrees; files count them in radians too.
-fn angles(entity: Entity) -> Vec<ParameterMap> {
+pub(in crate::iges) fn angles(entity: Entity) -> Vec<ParameterMap> {
     const DEGREE: f64 = PI / 180.0;
     let [u, v] = match entity {
         Entity::PlaneSurface => return vec![ParameterMap::identity()],

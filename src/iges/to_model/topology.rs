@@ -277,7 +277,8 @@ impl Builder<'_, '_> {
             [(_, piece)] => Piece2d::flat(piece),
             _ => Err(ReadError::KindNotReadYet("a curve in parameters that is made of several")),
         });
-        let found = flat.map(|flat| pcurve::fitted(on, &flat, &piece, self.scope.resolution));
+        let found =
+            flat.map(|flat| pcurve::fit(on, &flat, &piece, self.scope.resolution).map(|fit| fit.curve));
         match found {
             Ok(Some(curve)) => return Some((number, curve)),
             Ok(None) => {

@@ -243,7 +243,7 @@ impl Builder<'_, '_> {
         read: &SurfaceRead,
     ) -> Option<(EntryNumber, crate::geometry::Curve2d)> {
         let (number, flat) = bit.flat.as_ref()?;
-        let found = pcurve::fitted(read, flat, on, self.scope.resolution);
+        let found = pcurve::fit(read, flat, on, self.scope.resolution).map(|fit| fit.curve);
         if found.is_none() {
             let message = format!("its image on the surface is nowhere near {}, which stands", bit.number);
             self.report(ModelCode::BadPcurve, *number, message);

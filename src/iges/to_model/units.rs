@@ -9,7 +9,7 @@ use crate::units::{AngleUnit, LengthUnit, Tolerance};
 
 /// Flags, names as files have them, names as people read them, and metres (IGES 5.3 section 2.2.4.3.14). Flag 3 refers
 /// to the name.
-const UNITS: [(i64, &[&str], &str, f64); 10] = [
+pub(in crate::iges) const UNITS: [(i64, &[&str], &str, f64); 10] = [
     (1, &["IN", "INCH"], "inch", 0.0254),
     (2, &["MM"], "mm", 1e-3),
     (4, &["FT"], "ft", 0.3048),

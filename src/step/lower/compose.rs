@@ -8,13 +8,15 @@ use crate::geometry::nurbs::{KnotVector, NurbsCurve, NurbsSurface};
 
 /// A value of a new record.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Value {
+pub(in crate::step) enum Value {
     /// As it stands, or would stand, in a file.
     Verbatim(String),
     Integer(usize),
     Real(f64),
     Reference(InstanceName),
     List(Vec<Value>),
+    /// A value of a select type, with the keyword of its type.
+    Typed(&'static str, Box<Value>),
 }
 
 impl Value {
@@ -39,23 +41,33 @@ impl Value {
                 values.iter().for_each(|value| value.write(writer));
                 writer.close()
             }
+            Self::Typed(keyword, value) => {
+                writer.open(keyword);
+                value.write(writer);
+                writer.close()
+            }
         };
     }
 }
 
 /// Text as a value.
-pub(super) fn verbatim(text: &str) -> Value {
+pub(in crate::step) fn verbatim(text: &str) -> Value {
     Value::Verbatim(text.to_owned())
 }
 
 /// What stands between `=` and `;`: one record, or the partial records of a complex instance.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Body(Vec<(&'static str, Vec<Value>)>);
+pub(in crate::step) struct Body(Vec<(&'static str, Vec<Value>)>);
 
 impl Body {
     /// A simple instance.
-    pub(super) fn simple(keyword: &'static str, values: Vec<Value>) -> Self {
+    pub(in crate::step) fn simple(keyword: &'static str, values: Vec<Value>) -> Self {
         Self(vec![(keyword, values)])
+    }
+
+    /// A complex instance, its partial records in the order of the alphabet.
+    pub(in crate::step) fn complex(parts: Vec<(&'static str, Vec<Value>)>) -> Self {
+        Self(parts)
     }
 
     /// Writes the text.
@@ -77,18 +89,18 @@ impl Body {
 
 /// Raw text that a new curve or surface takes over from the record that it replaces.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Inherited {
+pub(in crate::step) struct Inherited {
     /// `name`, with its quotes.
-    pub(super) name: String,
+    pub(in crate::step) name: String,
     /// `closed_curve`, or `u_closed` and `v_closed`.
-    pub(super) closed: [String; 2],
+    pub(in crate::step) closed: [String; 2],
     /// `self_intersect`.
-    pub(super) self_intersect: String,
+    pub(in crate::step) self_intersect: String,
 }
 
 impl Inherited {
     /// What a record without predecessor says.
-    pub(super) fn nothing() -> Self {
+    pub(in crate::step) fn nothing() -> Self {
         let unknown = || ".U.".to_owned();
         Self { name: "''".to_owned(), closed: [unknown(), unknown()], self_intersect: unknown() }
     }
@@ -120,7 +132,7 @@ fn multiplicities(knots: &KnotVector) -> (Value, Value) {
 }
 
 /// The context of a curve in parameters.
-pub(super) fn parametric_context() -> Body {
+pub(in crate::step) fn parametric_context() -> Body {
     Body(vec![
         ("GEOMETRIC_REPRESENTATION_CONTEXT", vec![Value::Integer(2)]),
         ("PARAMETRIC_REPRESENTATION_CONTEXT", vec![]),

@@ -235,7 +235,7 @@ impl Lowering<'_> {
 
     /// Appends a curve in space with everything it refers to; it stands for the record `old`, or is a part of
     /// what does.
-    pub(super) fn append_curve(
+    pub(in crate::step) fn append_curve(
         &mut self,
         old: InstanceName,
         curve: &Curve,
@@ -245,7 +245,7 @@ impl Lowering<'_> {
         self.append(&body)
     }
 
-    pub(super) fn append_curve2d(
+    pub(in crate::step) fn append_curve2d(
         &mut self,
         old: InstanceName,
         curve: &Curve2d,

@@ -13,7 +13,7 @@
 
 mod access;
 mod bound;
-mod compose;
+pub(super) mod compose;
 mod curve;
 mod derived_curve;
 mod edge;
@@ -142,7 +142,7 @@ pub fn lower(structure: &ExchangeStructure, model: &Model, changes: &ChangeSet) 
 }
 
 /// Everything that grows while a change set is lowered.
-struct Lowering<'a> {
+pub(super) struct Lowering<'a> {
     structure: &'a ExchangeStructure,
     model: &'a Model,
     users: ReverseIndex,
@@ -170,7 +170,7 @@ struct Lowering<'a> {
 }
 
 impl<'a> Lowering<'a> {
-    fn new(structure: &'a ExchangeStructure, model: &'a Model) -> Self {
+    pub(super) fn new(structure: &'a ExchangeStructure, model: &'a Model) -> Self {
         Self {
             structure,
             model,
@@ -193,7 +193,7 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    fn finish(mut self) -> Result<Patch, LowerError> {
+    pub(super) fn finish(mut self) -> Result<Patch, LowerError> {
         let appended = edit::append(self.structure, self.appended).ok_or(LowerError::NoDataSection)?;
         self.edits.extend(appended);
         Patch::new(self.structure.source().bytes().len(), self.edits)
@@ -229,7 +229,7 @@ impl<'a> Lowering<'a> {
     }
 
     /// Appends a record `#n=body;` and gives its name.
-    fn append(&mut self, body: &compose::Body) -> Result<InstanceName, LowerError> {
+    pub(super) fn append(&mut self, body: &compose::Body) -> Result<InstanceName, LowerError> {
         let name = InstanceName(self.names.allocate()?);
         let mut writer = RecordWriter::instance(name, self.ending);
         body.write(&mut writer);

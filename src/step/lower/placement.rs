@@ -128,7 +128,7 @@ impl Lowering<'_> {
     }
 
     /// Appends an `AXIS2_PLACEMENT_3D`.
-    pub(super) fn append_frame(&mut self, frame: &Frame) -> Result<InstanceName, LowerError> {
+    pub(in crate::step) fn append_frame(&mut self, frame: &Frame) -> Result<InstanceName, LowerError> {
         let location = self.append_point(frame.origin.coords.as_slice())?;
         let axis = self.append_direction(frame.z.as_slice())?;
         let x = self.append_direction(frame.x.as_slice())?;

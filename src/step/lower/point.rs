@@ -72,7 +72,7 @@ impl Lowering<'_> {
     }
 
     /// Appends a point in space.
-    pub(super) fn append_point(&mut self, coordinates: &[f64]) -> Result<InstanceName, LowerError> {
+    pub(in crate::step) fn append_point(&mut self, coordinates: &[f64]) -> Result<InstanceName, LowerError> {
         self.append(&compose::coordinates("CARTESIAN_POINT", coordinates))
     }
 

@@ -173,7 +173,7 @@ impl Lowering<'_> {
     }
 
     /// Text of a surface that stands for the record `old`, or beside it.
-    pub(super) fn surface_body(
+    pub(in crate::step) fn surface_body(
         &mut self,
         old: InstanceName,
         surface: &Surface,
@@ -210,10 +210,13 @@ impl Lowering<'_> {
                 let points = self.append_net(&compose::euclidean(spline.net()))?;
                 compose::spline_surface(spline, &points, inherited)
             }
-            Surface::Offset { .. }
-            | Surface::Trimmed { .. }
-            | Surface::CurveBounded { .. }
-            | Surface::Composite(_) => {
+            Surface::Offset { basis, distance } => {
+                let basis = self.surface_body(old, basis, radians, &Inherited::nothing())?;
+                let basis = Value::Reference(self.append(&basis)?);
+                let values = vec![inherited.name(), basis, Value::Real(*distance), compose::verbatim(".U.")];
+                Body::simple("OFFSET_SURFACE", values)
+            }
+            Surface::Trimmed { .. } | Surface::CurveBounded { .. } | Surface::Composite(_) => {
                 return Err(LowerError::Unwritable { name: old, kind: surface.kind() });
             }
         })
