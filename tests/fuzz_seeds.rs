@@ -8,17 +8,19 @@ mod bodies {
     include!("../fuzz/bodies/iges_cards.rs");
     include!("../fuzz/bodies/iges_global.rs");
     include!("../fuzz/bodies/iges_parameters.rs");
+    include!("../fuzz/bodies/other_format.rs");
 
     /// A name and a body that must not panic.
     pub type Target = (&'static str, fn(&[u8]));
 
     /// All targets.
-    pub const ALL: [Target; 5] = [
+    pub const ALL: [Target; 6] = [
         ("p21_tile", p21_tile),
         ("p21_edit_locality", p21_edit_locality),
         ("iges_cards", iges_cards),
         ("iges_global", iges_global),
         ("iges_parameters", iges_parameters),
+        ("other_format", other_format),
     ];
 }
 
@@ -30,7 +32,7 @@ fn seeds() -> Vec<Vec<u8>> {
     let mut paths: Vec<_> =
         std::fs::read_dir(folder).expect("the seeds are there").flatten().map(|e| e.path()).collect();
     paths.sort();
-    assert!(paths.len() >= 7, "seeds are missing");
+    assert!(paths.len() >= 8, "seeds are missing");
     paths.iter().map(|path| std::fs::read(path).expect("readable")).collect()
 }
 

@@ -1,4 +1,4 @@
-"""What Open CASCADE counts and measures in STEP files: one JSON line for each file given.
+"""What Open CASCADE counts and measures in STEP and IGES files: one JSON line for each file given.
 
 Needs cadquery-ocp; with `--can` it only says whether it can be used. Each solid and each shell outside of solids
 counts once, whatever its location. Lengths are in the unit of the file's first context, as `METRES` in the
@@ -17,6 +17,7 @@ from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
 from OCP.IFSelect import IFSelect_RetDone
+from OCP.IGESControl import IGESControl_Reader
 from OCP.Message import Message
 from OCP.STEPControl import STEPControl_Reader
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
@@ -74,7 +75,8 @@ def mass(shape, volume):
 
 
 def measure(path):
-    reader = STEPControl_Reader()
+    is_iges = path.lower().endswith((".igs", ".iges"))
+    reader = IGESControl_Reader() if is_iges else STEPControl_Reader()
     if reader.ReadFile(path) != IFSelect_RetDone:
         return {"error": "not read"}
     reader.TransferRoots()

@@ -8,7 +8,7 @@ use super::super::to_model::pcurve;
 use super::super::{DirectoryEntry, EntryNumber};
 use super::{FromModelError, LowerError, Rank, Writer};
 use crate::brep::{CoedgeId, EdgeId, FaceId, edge_range};
-use crate::geometry::{ParameterMap, Surface};
+use crate::geometry::{Curve2d, ParameterMap, Surface};
 use crate::model::Origin;
 
 /// An entity that new ones stand for, where there is none.
@@ -59,7 +59,8 @@ impl Writer<'_, '_> {
     }
 
     /// The curve of a coedge in the file's parameters of a B-spline surface, run as the coedge does; `None` where the
-    /// model has none, or on a surface whose parameters readers count in several ways.
+    /// model has none, on a surface whose parameters readers count in several ways, and where it could be taken for the
+    /// curve run the other way (a closed one) or at another pace (a conic).
     pub(super) fn pcurve(
         &mut self,
         coedge: CoedgeId,
@@ -70,7 +71,11 @@ impl Writer<'_, '_> {
         let of = &brep.coedges[coedge];
         let face = brep.loops[of.in_loop].face;
         let on_spline = matches!(brep.surface_of(face).read(), Some(Surface::Nurbs(_)));
-        let Some(curve) = of.pcurve.clone().filter(|_| on_spline) else { return Ok(None) };
+        let open = brep.edges[of.edge].start != brep.edges[of.edge].end;
+        let plain = |curve: &Curve2d| matches!(curve, Curve2d::Line { .. } | Curve2d::Nurbs(_));
+        let Some(curve) = of.pcurve.clone().filter(|curve| on_spline && open && plain(curve)) else {
+            return Ok(None);
+        };
         let own = lift::in_file(&Piece2d { curve, range: piece.range }, map);
         let along = of.forward == brep.edges[of.edge].same_sense;
         let own = own.and_then(|own| if along { Some(own) } else { pcurve::reversed(&own) });

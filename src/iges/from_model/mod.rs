@@ -80,6 +80,9 @@ pub enum FromModelError {
         /// Its name.
         name: String,
     },
+    /// Nothing to write: a file of this format has at least one entity.
+    #[error("the part has neither bodies nor curves nor uses of products")]
+    Empty,
     /// Products within products beyond any real part.
     #[error("products are nested more than {MAX_NESTING} deep")]
     Nesting,
@@ -116,6 +119,9 @@ pub fn from_model(model: &Model, header: &Header, sink: &mut dyn Sink) -> Result
     writer.products(&unit)?;
     writer.losses();
     let entities: Vec<NewEntity> = writer.lowering.draft.into_added();
+    if entities.is_empty() {
+        return Err(FromModelError::Empty);
+    }
     Ok(write::file(&["made from another format"], &global, &entities))
 }
 
@@ -196,6 +202,9 @@ fn global(model: &Model, header: &Header, unit: &LengthUnit) -> Result<Global, F
     let uncertainty = model.contexts.first().and_then(|context| context.uncertainty);
     let greatest =
         model.brep.vertices.iter().map(|(_, vertex)| vertex.point.coords.amax()).fold(0.0, f64::max);
+    if !greatest.is_finite() {
+        return Err(LowerError::NotFinite.into());
+    }
     let name = product::root_name(model).unwrap_or_else(|| header.name.clone());
     Ok(Global {
         sender_product: name.clone(),

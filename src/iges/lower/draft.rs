@@ -200,6 +200,9 @@ impl<'a> Draft<'a> {
         new: Record,
         old: Option<&Record>,
     ) -> Result<(), LowerError> {
+        if !new.is_finite() {
+            return Err(LowerError::NotFinite);
+        }
         let Some(view) = self.instance(number).and_then(EntityView::of) else { return Ok(()) };
         let entry = view.instance().entry();
         self.set_matrix(number, new.matrix, entry)?;
@@ -252,6 +255,9 @@ impl<'a> Draft<'a> {
         look: Look<'_>,
         behind: &[ParameterText],
     ) -> Result<EntryNumber, LowerError> {
+        if !record.is_finite() {
+            return Err(LowerError::NotFinite);
+        }
         let transformation = match record.matrix {
             Matrix::Same => 0,
             Matrix::New(map) => self.matrix(&map, look.from)?,

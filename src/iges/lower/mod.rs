@@ -80,6 +80,9 @@ pub enum LowerError {
     /// Statements about the shape, which the format does not have.
     #[error("the format has no statements about the shape")]
     Statements,
+    /// A new number beyond what a file can say.
+    #[error("a number of the result is beyond every finite one")]
+    NotFinite,
     /// New cards have no place to go.
     #[error(transparent)]
     Edit(#[from] EditError),

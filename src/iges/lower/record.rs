@@ -91,6 +91,11 @@ impl Record {
         self.values([Value::to(number)])
     }
 
+    /// Whether every number in it has a text.
+    pub(in crate::iges) fn is_finite(&self) -> bool {
+        self.values.iter().all(|value| !matches!(value, Value::Real(value) if !value.is_finite()))
+    }
+
     /// The parameters as text, the type first.
     pub(in crate::iges) fn texts(&self) -> Vec<ParameterText> {
         let kind = RecordWriter::of_type(self.entity_type).finish();

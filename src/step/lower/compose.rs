@@ -25,6 +25,16 @@ impl Value {
         verbatim("''")
     }
 
+    /// Whether every number in it has a text.
+    fn is_finite(&self) -> bool {
+        match self {
+            Self::Real(value) => value.is_finite(),
+            Self::List(values) => values.iter().all(Self::is_finite),
+            Self::Typed(_, value) => value.is_finite(),
+            Self::Verbatim(_) | Self::Integer(_) | Self::Reference(_) => true,
+        }
+    }
+
     fn list<T>(values: impl IntoIterator<Item = T>, one: impl Fn(T) -> Self) -> Self {
         Self::List(values.into_iter().map(one).collect())
     }
@@ -68,6 +78,11 @@ impl Body {
     /// A complex instance, its partial records in the order of the alphabet.
     pub(in crate::step) fn complex(parts: Vec<(&'static str, Vec<Value>)>) -> Self {
         Self(parts)
+    }
+
+    /// Whether every number in it has a text.
+    pub(super) fn is_finite(&self) -> bool {
+        self.0.iter().flat_map(|(_, values)| values).all(Value::is_finite)
     }
 
     /// Writes the text.

@@ -91,6 +91,9 @@ pub enum LowerError {
     /// A new edge with a curve of its own has no curve in the parameters of any face.
     #[error("a new edge has no curve in the parameters of a face")]
     NoFaceOfEdge,
+    /// A new number beyond what a file can say.
+    #[error("a number of the result is beyond every finite one")]
+    NotFinite,
     /// New records have no place to go.
     #[error("the file has no data section for new records")]
     NoDataSection,
@@ -230,6 +233,9 @@ impl<'a> Lowering<'a> {
 
     /// Appends a record `#n=body;` and gives its name.
     pub(super) fn append(&mut self, body: &compose::Body) -> Result<InstanceName, LowerError> {
+        if !body.is_finite() {
+            return Err(LowerError::NotFinite);
+        }
         let name = InstanceName(self.names.allocate()?);
         let mut writer = RecordWriter::instance(name, self.ending);
         body.write(&mut writer);
