@@ -157,3 +157,47 @@ fn parts_of_a_torus_that_meets_itself() {
     let inner = assert_area(&[FACE, &torus(".F."), &vertex(0.0, 3f64.sqrt())], -part(pole, 2.0 * PI - pole));
     assert!((far(&inner) - 1.0).abs() < 5e-3);
 }
+
+#[test]
+fn parameter_curves_a_turn_above_the_pole_of_a_sphere_are_no_guide() {
+    // An eighth of a sphere of radius 3; two of its sides have parameter curves at v - 2π, which is the same circle.
+    let turn = -2.0 * PI;
+    let side = |k: usize, [from, to]: [usize; 2], axis: usize, uv: [f64; 2], along: &str| {
+        format!(
+            "#{}=EDGE_CURVE('',#{from},#{to},#{},.T.);#{}=SURFACE_CURVE('',#{},(#{}),.CURVE_3D.);#{}=CIRCLE('',#{axis},3.);
+             #{}=PCURVE('',#100,#{});#{}=DEFINITIONAL_REPRESENTATION('',(#{}),#190);#{}=LINE('',#{},#{});
+             #{}=CARTESIAN_POINT('',({:?},{:?}));#{}=VECTOR('',#{along},1.);",
+            k, k + 1, k + 1, k + 2, k + 3, k + 2, k + 3, k + 4, k + 4, k + 5, k + 5, k + 6, k + 7, k + 6, uv[0],
+            uv[1], k + 7
+        )
+    };
+    let records = "#100=SPHERICAL_SURFACE('',#11,3.);
+        #5=FACE_OUTER_BOUND('',#6,.T.);#6=EDGE_LOOP('',(#60,#61,#62));#60=ORIENTED_EDGE('',*,*,#200,.T.);
+        #61=ORIENTED_EDGE('',*,*,#210,.T.);#62=ORIENTED_EDGE('',*,*,#220,.F.);
+        #30=VERTEX_POINT('',#20);#31=VERTEX_POINT('',#21);#32=VERTEX_POINT('',#22);
+        #20=CARTESIAN_POINT('',(3.,0.,0.));#21=CARTESIAN_POINT('',(0.,3.,0.));#22=CARTESIAN_POINT('',(0.,0.,3.));
+        #40=AXIS2_PLACEMENT_3D('',#12,#14,#41);#41=DIRECTION('',(0.,1.,0.));
+        #42=AXIS2_PLACEMENT_3D('',#12,#43,#14);#43=DIRECTION('',(0.,-1.,0.));
+        #180=DIRECTION('',(1.,0.));#181=DIRECTION('',(0.,1.));
+        #190=(GEOMETRIC_REPRESENTATION_CONTEXT(2)PARAMETRIC_REPRESENTATION_CONTEXT()REPRESENTATION_CONTEXT('',''));";
+    let sides = side(200, [30, 31], 11, [0.0, 0.0], "180")
+        + &side(210, [31, 32], 40, [0.5 * PI, turn], "181")
+        + &side(220, [30, 32], 42, [0.0, turn], "181");
+    assert_area(&[FACE, records, &sides], 4.5 * PI);
+}
+
+#[test]
+fn a_bound_that_begins_at_the_vertex_of_a_hyperbola_but_for_rounding() {
+    // x = 2 cosh t, y = sinh t, from t = -1 to 1 by two edges, and the chord between the ends.
+    let (x, y) = (2.0 * 1f64.cosh(), 1f64.sinh());
+    let records = format!(
+        "#5=FACE_OUTER_BOUND('',#6,.T.);#6=EDGE_LOOP('',(#60,#61,#62));#60=ORIENTED_EDGE('',*,*,#40,.F.);
+         #61=ORIENTED_EDGE('',*,*,#41,.F.);#62=ORIENTED_EDGE('',*,*,#42,.F.);
+         #40=EDGE_CURVE('',#30,#31,#50,.T.);#41=EDGE_CURVE('',#32,#30,#50,.T.);#42=EDGE_CURVE('',#31,#32,#51,.T.);
+         #50=HYPERBOLA('',#11,2.,1.);#51=LINE('',#21,#70);#70=VECTOR('',#71,1.);#71=DIRECTION('',(0.,-1.,0.));
+         #30=VERTEX_POINT('',#20);#31=VERTEX_POINT('',#21);#32=VERTEX_POINT('',#22);
+         #20=CARTESIAN_POINT('',(2.,1.3E-16,0.));
+         #21=CARTESIAN_POINT('',({x:?},{y:?},0.));#22=CARTESIAN_POINT('',({x:?},-{y:?},0.));"
+    );
+    assert_area(&[FACE, PLANE, &records], x * y - 2.0);
+}

@@ -5,7 +5,7 @@ use resurf::diagnostic::Diagnostics;
 use resurf::document::Document;
 use resurf::geometry::Surface;
 use resurf::geometry::nurbs::NurbsSurface;
-use resurf::math::Point3;
+use resurf::math::{Point3, Vector3};
 use serde_json::json;
 
 use super::Fixture;
@@ -123,14 +123,19 @@ fn impossible_words_are_placed() {
 
 /// The B-spline surface of the named face.
 fn surface(fixture: &Fixture, file: &str, name: &str) -> NurbsSurface {
+    match read_surface(fixture, file, name) {
+        Surface::Nurbs(surface) => surface,
+        other => panic!("{other:?} is no B-spline surface"),
+    }
+}
+
+/// The surface of the named face.
+fn read_surface(fixture: &Fixture, file: &str, name: &str) -> Surface {
     let bytes = std::fs::read(fixture.path(file)).expect("a file");
     let mut diagnostics = Diagnostics::default();
     let model = Document::open(bytes, "step", &mut diagnostics).expect("STEP").model(&mut diagnostics);
     let face = model.brep.faces.ids().find(|&face| model.faces[face].name == name).expect("the face");
-    match model.brep.surface_of(face).read() {
-        Some(Surface::Nurbs(surface)) => surface.clone(),
-        other => panic!("{other:?} is no B-spline surface"),
-    }
+    model.brep.surface_of(face).read().expect("a surface").clone()
 }
 
 fn over(file: &str, words: &str) -> Fixture {
@@ -211,10 +216,73 @@ fn a_band_of_a_face_is_changed_alone() {
     assert!((0..=20).any(|v| at([0.7, 0.8], v) > 0.5));
 }
 
+/// What each point of a named face moved by along the middle of the band; the face before may be of any kind.
+fn moved_along(fixture: &Fixture, [before, after]: [&str; 2], name: &str) -> Vec<Vector3<f64>> {
+    let after = surface(fixture, after, name);
+    let (u, v) = after.domain();
+    let before = read_surface(fixture, before, name).to_nurbs(u, v).expect("an exact form");
+    let middle = 0.5 * (v.0 + v.1);
+    let at = (0..=200).map(|i| u.0 + (u.1 - u.0) * f64::from(i) / 200.0);
+    at.map(|u| after.point(u, middle) - before.point(u, middle)).collect()
+}
+
+/// In world directions detail does not depend on the target: a surface of revolution gets what the arch gets, and so does
+/// the rational B-spline that it has become, at a higher degree each time until there is none.
+#[test]
+fn faces_with_weights_get_the_same_detail_exactly() {
+    let words = format!("{SOURCE}frame = \"global\"\nends = \"tangent\"\n");
+    let target = "target = { face = { name = \"TREAD\" }, direction = \"u\" }\n";
+    let again = job("out/wheel.step", &format!("{words}{target}")).replace("out/{stem}", "again/{stem}");
+    let third = again.replace("\"out/wheel", "\"again/wheel").replace("again/{stem}", "third/{stem}");
+    let fixture = over("wheel/wheel.step", &format!("{words}{target}"))
+        .file("arch.toml", job("arch.step", &words))
+        .file("again.toml", again)
+        .file("third.toml", third);
+    for name in ["job.toml", "arch.toml", "again.toml"] {
+        let said = fixture.run(&["run", name]);
+        assert!(said.starts_with("exit code: 0"), "{name}: {said}");
+    }
+    let (arch, changed) = (sampled(&fixture, "arch.step"), sampled(&fixture, "out/arch.step"));
+    let wanted: Vec<_> = arch.iter().zip(&changed).map(|(a, b)| b - a).collect();
+    assert!(wanted.iter().any(|d| d.norm() > 0.5));
+    for files in [["wheel.step", "out/wheel.step"], ["out/wheel.step", "again/wheel.step"]] {
+        for (moved, wanted) in moved_along(&fixture, files, "TREAD").iter().zip(&wanted) {
+            assert!((moved - wanted).norm() <= 1e-10 * 220.0, "{files:?}: {moved} against {wanted}");
+        }
+    }
+    let said = fixture.run(&["run", "third.toml"]);
+    assert!(said.starts_with("exit code: 4") && said.contains("its degree is too high"), "{said}");
+}
+
+/// Beside a plane, a cylinder's quarters meet without a crease, before and after.
+#[test]
+fn quarters_of_a_cylinder_stay_smooth() {
+    let target = "target = { face = { name = \"BORE\" }, direction = \"v\" }\n";
+    let fixture = over("wheel/wheel.step", &format!("{SOURCE}{target}gain = 0.2\n"));
+    let said = fixture.run(&["run", "job.toml"]);
+    assert!(said.starts_with("exit code: 0"), "{said}");
+    let after = surface(&fixture, "out/wheel.step", "BORE");
+    let ((first, last), v) = after.domain();
+    let mut moved = 0.0_f64;
+    for quarter in 1..4 {
+        let u = first + (last - first) * f64::from(quarter) / 4.0;
+        for k in 0..=40 {
+            let v = v.0 + (v.1 - v.0) * f64::from(k) / 40.0;
+            let step = 1e-9 * (last - first);
+            let sides = [u - step, u + step].map(|u| after.normal(u, v).expect("a normal"));
+            let angle = sides[0].cross(&sides[1]).norm();
+            assert!(angle <= 1e-6, "a crease of {angle:e} at ({u}, {v})");
+            moved = moved.max((after.point(u, v).coords.xy().norm() - 30.0).abs());
+        }
+    }
+    assert!(moved > 0.1, "{moved}");
+}
+
 #[test]
 fn faces_that_cannot_take_detail_are_refused() {
-    let plane = over("plate/plate.step", &format!("{SOURCE}target = {{ face = {{ name = \"TOP\" }} }}"));
-    assert_snapshot!(plane.run(&["run", "job.toml"]));
+    let seats = "target = { face = { name = \"TREAD\" } }\nexisting = \"replace\"";
+    let replaced = over("wheel/wheel.step", &format!("{SOURCE}{seats}"));
+    assert_snapshot!(replaced.run(&["run", "job.toml"]));
     let free = format!("{SOURCE}target = {{ face = {{ name = \"WALL\" }} }}\nends = \"free\"");
     assert_snapshot!(over("vase/vase.step", &free).run(&["run", "job.toml"]));
     let both = format!("{SOURCE}target = {{ face = {{ name = \"WALL\" }}, curve = \"#1\" }}");
@@ -253,6 +321,11 @@ fn faces_of_real_solids_get_detail() {
         ("s1-c5-214/MAINBODY_BACK.stp", "#783", "v"),
         ("Amazing Hand Parts - R-Top_Shell.step", "#1609", "u"),
         ("s1-c5-214/MAINBODY_FRONT.stp", "#757", "v"),
+        // A cylinder along and across, one in centimetres, one in inches.
+        ("io1-cm-214.stp", "#6510", "u"),
+        ("io1-cm-214.stp", "#6510", "v"),
+        ("boxed_sphere.step", "#119", "u"),
+        ("featuretype.STEP", "#38", "v"),
     ];
     for (part, face, direction) in parts {
         let input = std::fs::read(corpus.join("step").join(part)).expect("a file of the corpus");

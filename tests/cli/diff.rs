@@ -78,18 +78,94 @@ fn faces_that_differ(before: &str, after: &str) -> BTreeSet<String> {
     differ
 }
 
-/// Runs the job of a sample without its validators, and holds that `diff` names just the faces whose records differ.
-fn names_what_a_job_changed(job: &str, parts: &[&str], input: &str, output: &str) {
+/// A job of `samples/` and the part of it that is compared, without their common folder.
+struct Golden {
+    job: &'static str,
+    input: &'static str,
+    output: &'static str,
+    /// Files that the job reads beside the part.
+    others: &'static [&'static str],
+}
+
+const FEATURES: &[&str] = &["features/symbol.step", "features/bump.step", "features/groove.step"];
+
+/// Every sample job that changes faces.
+const GOLDEN: [Golden; 10] = [
+    Golden {
+        job: "door/job.toml",
+        input: "door/door.step",
+        output: "door/out/door-scaled.step",
+        others: &[],
+    },
+    Golden {
+        job: "hood/job.toml",
+        input: "hood/hood.step",
+        output: "hood/out/hood-scaled.step",
+        others: &[],
+    },
+    Golden {
+        job: "trunk/job.toml",
+        input: "trunk/trunk.step",
+        output: "trunk/out/trunk-scaled.step",
+        others: &[],
+    },
+    Golden {
+        job: "door-solid/job.toml",
+        input: "door-solid/door-solid.step",
+        output: "door-solid/out/door-solid-scaled.step",
+        others: &[],
+    },
+    Golden {
+        job: "assembly/job.toml",
+        input: "assembly/assembly.step",
+        output: "assembly/out/assembly-scaled.step",
+        others: &[],
+    },
+    Golden {
+        job: "plate/job.toml",
+        input: "plate/plate.step",
+        output: "plate/out/plate-marked.step",
+        others: FEATURES,
+    },
+    Golden {
+        job: "vamp/job.toml",
+        input: "vamp/vamp.step",
+        output: "vamp/out/vamp-marked.step",
+        others: FEATURES,
+    },
+    Golden {
+        job: "vase/job.toml",
+        input: "vase/vase.step",
+        output: "vase/out/vase-bumps.step",
+        others: FEATURES,
+    },
+    Golden {
+        job: "vase/rim.toml",
+        input: "vase/vase.step",
+        output: "vase/out/vase-rim.step",
+        others: &["curves/sources.step"],
+    },
+    Golden {
+        job: "crease/job.toml",
+        input: "door-solid/door-solid.step",
+        output: "crease/out/door-with-crease.step",
+        others: &["crease/lines.step"],
+    },
+];
+
+/// Runs a job without its validators, and holds that `diff` names just the faces whose records differ.
+fn names_what_a_job_changed(golden: &Golden) {
+    let Golden { job: name, input, output, .. } = *golden;
+    let job = name;
     let mut text = sample(job);
     if let Some(start) = text.find("[validate]") {
         let end = text[start..].find("\n[[").map_or(text.len(), |end| start + end);
         text.replace_range(start..end, "");
     }
-    let folder = Path::new(job).parent().expect("a folder").to_string_lossy().into_owned();
-    let fixture = parts.iter().fold(Fixture::new(), |f, part| f.file(part, sample(part)));
-    let name = format!("{folder}/job.toml");
-    let fixture = fixture.file(&name, text);
-    let said = fixture.run(&["run", &name]);
+    let parts = golden.others.iter().chain([&golden.input]);
+    let fixture = parts.fold(Fixture::new(), |f, part| f.file(part, sample(part)));
+    let fixture = fixture.file(name, text);
+    let said = fixture.run(&["run", name]);
     assert!(said.starts_with("exit code: 0\n"), "{said}");
     let read = |name: &str| std::fs::read_to_string(fixture.path(name)).expect("a part");
     let expected = faces_that_differ(&read(input), &read(output));
@@ -113,24 +189,7 @@ fn names_what_a_job_changed(job: &str, parts: &[&str], input: &str, output: &str
 
 #[test]
 fn faces_that_jobs_changed_are_named_and_no_others() {
-    names_what_a_job_changed(
-        "door/job.toml",
-        &["door/door.step"],
-        "door/door.step",
-        "door/out/door-scaled.step",
-    );
-    names_what_a_job_changed(
-        "plate/job.toml",
-        &["plate/plate.step", "features/symbol.step", "features/bump.step", "features/groove.step"],
-        "plate/plate.step",
-        "plate/out/plate-marked.step",
-    );
-    names_what_a_job_changed(
-        "assembly/job.toml",
-        &["assembly/assembly.step"],
-        "assembly/assembly.step",
-        "assembly/out/assembly-scaled.step",
-    );
+    GOLDEN.iter().for_each(names_what_a_job_changed);
 }
 
 #[test]

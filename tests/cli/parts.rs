@@ -35,6 +35,21 @@ fn an_input_is_never_written_over() {
 }
 
 #[test]
+fn faces_that_a_page_leaves_out_are_named() {
+    // The hole moved across the border: its bound crosses the outer one on #509, and its wall #554 is bounded by nothing.
+    let moved = include_str!("../defects/drilled.step")
+        .replacen("#256=CARTESIAN_POINT('ct centre',(20.,", "#256=CARTESIAN_POINT('ct centre',(38.,", 1)
+        .replacen("#36=CARTESIAN_POINT('v9',(25.,", "#36=CARTESIAN_POINT('v9',(43.,", 1);
+    let fixture = Fixture::new().file("part.step", moved);
+    let said = fixture.run(&["view", "part.step", "-o", "page.html"]);
+    assert!(said.starts_with("exit code: 1\n"), "{said}");
+    for face in ["#509", "#554"] {
+        assert!(said.contains(&format!("part.step: not shown: {face}: bounds ")), "{face}: {said}");
+    }
+    assert!(fixture.path("page.html").exists(), "the rest is shown");
+}
+
+#[test]
 fn inspect_tells_what_is_inside() {
     let fixture = Fixture::new().sample("assembly/assembly.step");
     insta::assert_snapshot!(fixture.run(&["inspect", "assembly.step"]));

@@ -5,7 +5,7 @@ use resurf::geometry::bspline_wavelet::decompose;
 use resurf::geometry::nurbs::KnotVector;
 use resurf::math::{Matrix3, Vector3};
 use resurf::ops::detail_transfer::{
-    Existing, Frame, LevelChoice, Scale, Settings, Spline, TransferError, transfer,
+    Existing, Frame, LevelChoice, Scale, Settings, Spline, TargetBase, TransferError, transfer,
 };
 use serde_json::Value;
 
@@ -51,6 +51,7 @@ fn settings_of(case: &Value) -> Settings {
         ends: whole(options, "k"),
         interval: options.get("interval").map(|i| (numbers(i)[0], numbers(i)[1])),
         existing: Existing::Keep,
+        target_base: TargetBase::Coarse,
         reverse: options.get("reverse").is_some_and(|r| r == true),
         roll: options.get("roll").map_or(0.0, |r| r.as_f64().expect("a number")),
         normals: [direction(&case["source_normal"]), direction(&case["target_normal"])],

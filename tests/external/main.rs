@@ -9,6 +9,7 @@ use std::process::Command;
 use serde_json::Value;
 
 mod held;
+mod made;
 mod measures;
 mod referee;
 

@@ -174,6 +174,40 @@ fn a10_the_fit_is_exact_where_the_grids_coincide() {
     }
 }
 
+/// Where the window's sides are knot lines of the target, the cells beyond them stay as they are.
+#[test]
+fn a_fit_along_the_lines_of_a_large_span_changes_the_window_alone() {
+    let target = part([1, 1], [1, 1], |x, y| [9.0 * x, 9.0 * y, 0.0]).transformed(&super::parts::motion());
+    for mirror in [Mirror::None, Mirror::U, Mirror::V] {
+        let settings = Settings { mirror, method: Some(Method::Fit), ..Settings::new(5e-3) };
+        let result = pasted(&source(), &target, 0.42, &settings).unwrap();
+        let columns = result.changed.shape().1;
+        assert!(result.changed.count() > 0);
+        // The sheet is 4 wide and goes to the middle of 9.
+        let reach = 2.0 / 9.0 + 1e-6;
+        for at in result.changed.indices() {
+            let places = [(result.refined.knots_u(), at / columns), (result.refined.knots_v(), at % columns)];
+            for (knots, k) in places {
+                let acts = [knots.knots()[k], knots.knots()[k + knots.degree() + 1]];
+                assert!(acts.iter().all(|x| (x - 0.5).abs() <= reach), "{mirror:?}: {acts:?}");
+            }
+        }
+    }
+}
+
+/// A net need not be denser for a slight turn: the lines of both surfaces nearly agree then.
+#[test]
+fn a_slight_turn_costs_no_more_than_a_great_one() {
+    let target = moved_plane([3, 3]);
+    let points = |degrees: f64| {
+        let settings =
+            Settings { angle: degrees.to_radians(), method: Some(Method::Fit), ..Settings::new(5e-3) };
+        pasted(&source(), &target, 0.42, &settings).unwrap().surface.net().len()
+    };
+    let (slight, great) = (points(1.0).max(points(89.0)), points(45.0));
+    assert!(slight <= 2 * great, "{slight} against {great}");
+}
+
 /// Weights that are all 3 mean the same surface as weights that are all 1.
 #[test]
 fn a_common_factor_of_the_weights_does_not_matter() {

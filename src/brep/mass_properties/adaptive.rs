@@ -19,40 +19,52 @@ pub(super) struct Accuracy {
     pub(super) target: f64,
 }
 
-/// Integral and error of `value` over an interval.
+/// What an integration along a path finds.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Found {
+    pub(super) sum: Sums,
+    pub(super) errors: Sums,
+    /// How far the path moves across the columns, by its speed at the same places.
+    pub(super) advance: f64,
+}
+
+/// Integral of `value`, what is summed up and how fast the path moves across, over an interval.
 pub(super) fn integrate(
-    value: &dyn Fn(f64) -> Sums,
+    value: &dyn Fn(f64) -> (Sums, f64),
     from: f64,
     to: f64,
     accuracy: &Accuracy,
-) -> (Sums, Sums) {
-    let (mut sum, mut errors) = (Sums::ZERO, Sums::ZERO);
+) -> Found {
+    let mut found = Found { sum: Sums::ZERO, errors: Sums::ZERO, advance: 0.0 };
     let mut open = vec![(from, to, 0)];
     let mut count = 0;
     while let Some((from, to, depth)) = open.pop() {
-        let (fine, error) = once(value, from, to);
+        let one = once(value, from, to);
         count += 1;
-        let good = error.relative(accuracy.size, accuracy.reach) <= accuracy.target;
+        let good = one.errors.relative(accuracy.size, accuracy.reach) <= accuracy.target;
         if good || depth == MAX_DEPTH || count > MAX_INTERVALS {
-            sum += fine;
-            errors += error;
+            found.sum += one.sum;
+            found.errors += one.errors;
+            found.advance += one.advance;
         } else {
             let middle = 0.5 * (from + to);
             open.push((middle, to, depth + 1));
             open.push((from, middle, depth + 1));
         }
     }
-    (sum, errors)
+    found
 }
 
-fn once(value: &dyn Fn(f64) -> Sums, from: f64, to: f64) -> (Sums, Sums) {
+fn once(value: &dyn Fn(f64) -> (Sums, f64), from: f64, to: f64) -> Found {
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
     let (mut fine, mut coarse, mut size) = (Sums::ZERO, Sums::ZERO, Sums::ZERO);
+    let mut advance = 0.0;
     for &(x, kronrod, gauss) in &KRONROD_7 {
-        let at = value(middle + half * x);
+        let (at, speed) = value(middle + half * x);
         fine += at * (kronrod * half);
         coarse += at * (gauss * half);
         size += at.abs() * (kronrod * half.abs());
+        advance += speed * (kronrod * half);
     }
-    (fine, fine.error_against(&coarse, &size))
+    Found { sum: fine, errors: fine.error_against(&coarse, &size), advance }
 }

@@ -97,6 +97,12 @@ impl Quadrature {
         Self { tolerance, target: 1e-8, pieces, points, between: Between::Feet }
     }
 
+    /// Good to some hundred-thousandths, without a projection.
+    #[must_use]
+    pub fn plain(tolerance: f64) -> Self {
+        Self { target: 1e-5, between: Between::Cubics, ..Self::good(tolerance) }
+    }
+
     /// Good to some parts in a hundred, at a small part of the cost.
     #[must_use]
     pub fn rough(tolerance: f64) -> Self {
@@ -112,6 +118,11 @@ impl Quadrature {
 
 /// Samples of a surface's domain along each parameter, where no loop tells its size.
 const SAMPLES: usize = 4;
+/// Part of the width of a face, across the columns, by which a piece of its boundary may be found to move less or more
+/// than from its start to its end: what any rule is off by.
+const MISSED: f64 = 1e-6;
+/// Speed of a parameter line against that at the other end of a piece below which the piece ends beside a pole.
+const BESIDE_POLE: f64 = 1e-2;
 /// Part of a parameter's range that a straight piece must span to lie at a pole.
 const AT_POLE: f64 = 1e-6;
 
@@ -334,6 +345,8 @@ struct Region<'a> {
     column: Column<'a>,
     accuracy: Accuracy,
     pieces: usize,
+    /// Extent of the loops across the columns.
+    width: f64,
 }
 
 impl<'a> Region<'a> {
@@ -353,15 +366,16 @@ impl<'a> Region<'a> {
         let (size, reach) = size_and_reach(surface, loops, &reference);
         let accuracy = Accuracy { size, reach: reach.max(size), target: quadrature.target };
         let mut column = Column::new(surface, along, reference, quadrature);
+        let (u, v) = ranges(surface, loops);
+        let (across, along) = if along == Along::V { (u, v) } else { (v, u) };
         // A rough measure skips knots: finer pieces are not what it lacks.
-        if quadrature.pieces == usize::MAX {
-            let (u, v) = ranges(surface, loops);
-            let (across, along) = if along == Along::V { (u, v) } else { (v, u) };
-            if [across.0, across.1, along.0, along.1].iter().all(|x| x.is_finite()) {
-                column.cut_finely(across, along, &accuracy);
-            }
+        if quadrature.pieces == usize::MAX
+            && [across.0, across.1, along.0, along.1].iter().all(|x| x.is_finite())
+        {
+            column.cut_finely(across, along, &accuracy);
         }
-        Ok(Self { surface, face, column, accuracy, pieces: quadrature.pieces })
+        let width = across.1 - across.0;
+        Ok(Self { surface, face, column, accuracy, pieces: quadrature.pieces, width })
     }
 
     /// Where the columns begin: at a pole where there is one, at the side that the loops leave open, else in the
@@ -484,7 +498,8 @@ impl<'a> Region<'a> {
         };
         let (mut sum, mut errors) = (Sums::ZERO, Sums::ZERO);
         // What one stop ends at is what the next begins at, to the bit: pieces cancel.
-        let ends: Vec<Place> = stops.iter().map(|&t| self.turned(place_at(t).0)).collect();
+        let ends: Vec<Place> =
+            stops.iter().map(|&t| self.turned(self.stop(path, t, place_at(t).0))).collect();
         for (pair, ends) in stops.windows(2).zip(ends.windows(2)) {
             let (place, speed) = place_at(0.5 * (pair[0] + pair[1]));
             let (middle, speed) = (self.turned(place), self.turned(speed));
@@ -493,21 +508,54 @@ impl<'a> Region<'a> {
             let term = |t: f64| {
                 let (place, speed) = place_at(t);
                 let ((at, to), (factor, _)) = (self.turned(place), self.turned(speed));
-                if factor == 0.0 {
+                let sums = if factor == 0.0 {
                     Sums::ZERO
                 } else {
                     self.column.integral(at, from, to) * if v_columns { -factor } else { factor }
-                }
+                };
+                (sums, factor)
             };
-            let (part, error) = integrate(&term, pair[0], pair[1], &self.accuracy);
-            sum += part;
-            errors += error;
+            let found = integrate(&term, pair[0], pair[1], &self.accuracy);
+            sum += found.sum;
+            errors += found.errors;
+            let missed = ends[1].0 - ends[0].0 - found.advance;
+            if missed.abs() > self.accuracy.target.max(MISSED) * self.width {
+                let (part, error) = self.turn_missed([ends[0], ends[1]], from);
+                sum += part * if v_columns { -missed } else { missed };
+                errors += error * missed.abs();
+            }
             if speed.0 != 0.0 {
                 let width = (speed.0 * (pair[1] - pair[0])).abs();
                 errors += self.column.error(middle.0, from, middle.1) * width;
             }
         }
         (sum, errors)
+    }
+
+    /// The place of a stop: at a pole, where no foot tells it, the one that the loop knows.
+    fn stop(&self, path: &Path<'_>, t: f64, foot: Place) -> Place {
+        match path {
+            Path::Edge(edge) if self.apart(foot) * self.width <= POLE * self.accuracy.size => edge.guess(t),
+            _ => foot,
+        }
+    }
+
+    /// How far columns stand apart at a place, for each unit of the parameter across.
+    fn apart(&self, (u, v): Place) -> f64 {
+        let (u, v) = self.surface.wrapped(u, v);
+        let d = self.surface.derivatives(u, v);
+        if self.column.along == Along::V { d.du.norm() } else { d.dv.norm() }
+    }
+
+    /// The column of a turn that a path takes too quickly for any rule, and how far it may be from that: such turns are
+    /// beside poles, at that end of the path where the columns stand closest.
+    fn turn_missed(&self, ends: [Place; 2], from: f64) -> (Sums, Sums) {
+        let apart = ends.map(|end| self.apart(self.turned(end)));
+        let columns = ends.map(|(across, along)| self.column.integral(across, from, along));
+        let (near, far) = if apart[0] <= apart[1] { (0, 1) } else { (1, 0) };
+        let is_pole = apart[near] <= BESIDE_POLE * apart[far];
+        let error = if is_pole { Sums::ZERO } else { (columns[far] + columns[near] * -1.0).abs() };
+        (columns[near], error)
     }
 
     /// Values of a path's parameter between which nothing changes its form.

@@ -122,7 +122,7 @@ impl EdgePath<'_> {
     }
 
     /// Between the known places.
-    fn guess(&self, t: f64) -> Place {
+    pub(super) fn guess(&self, t: f64) -> Place {
         let up = self.range().0 <= self.range().1;
         let after = self.places.partition_point(|&(s, _)| if up { s <= t } else { s >= t });
         let i = after.clamp(1, self.places.len() - 1);

@@ -24,7 +24,7 @@ const POLE_PART: f64 = 1e-2;
 /// Samples each way that tell the length of parameter lines.
 const LINE_SAMPLES: usize = 4;
 
-/// Part of a parameter curve's domain by which a point may lie past its end through rounding.
+/// Part of a domain by which a parameter may lie past its end through rounding.
 const PAST_END: f64 = 1e-9;
 
 /// One place on a coedge.
@@ -181,15 +181,19 @@ impl<'a> Walk<'a> {
         self.settled(track, places)
     }
 
+    /// Whether a pcurve is where its edge is, by places of the surface's own: a sphere has points a turn above its pole
+    /// too, from where no walk comes back.
     fn agrees(&self, pcurve: &Curve2d, along: &[EdgePoint]) -> bool {
         let limit = self.sampling.tolerance;
-        let (low, high) = pcurve.domain();
+        let ((u0, u1), (v0, v1)) = self.surface.domain();
+        let domain = [(u0, u1), (v0, v1)];
+        let within = |k: usize, x: f64| self.periods[k].is_some() || covers(domain[k], x);
         along.iter().all(|at| {
             let p = pcurve.point_at(at.t);
-            let slack = PAST_END * (high - low);
-            let inside = at.t >= low - slack && at.t <= high + slack;
-            let conic = pcurve.repeats();
-            (inside || conic) && (self.surface.point(p.x, p.y) - at.point).norm() <= limit
+            (covers(pcurve.domain(), at.t) || pcurve.repeats())
+                && within(0, p.x)
+                && within(1, p.y)
+                && (self.surface.point(p.x, p.y) - at.point).norm() <= limit
         })
     }
 
@@ -319,6 +323,12 @@ impl<'a> Walk<'a> {
             place.shift(shift);
         }
     }
+}
+
+/// Whether a domain has a parameter, but for rounding.
+fn covers((low, high): (f64, f64), x: f64) -> bool {
+    let slack = if (high - low).is_finite() { PAST_END * (high - low) } else { 0.0 };
+    x >= low - slack && x <= high + slack
 }
 
 /// The longest of some parameter lines along `u` and along `v`, as far as their speed tells; infinite where the

@@ -59,8 +59,14 @@ impl<const D: usize> Decomposition<D> {
     /// Levels beyond the gains count nothing. Without a level it is zero.
     #[must_use]
     pub fn detail(&self, gains: &[f64]) -> Vec<[f64; D]> {
+        self.detail_of(&self.details, gains)
+    }
+
+    /// The same with other rows for the same wavelets.
+    #[must_use]
+    pub fn detail_of(&self, details: &[Vec<[f64; D]>], gains: &[f64]) -> Vec<[f64; D]> {
         let mut sum = vec![[0.0; D]; self.base.len()];
-        for (at, (level, detail)) in self.levels.iter().zip(&self.details).enumerate().rev() {
+        for (at, (level, detail)) in self.levels.iter().zip(details).enumerate().rev() {
             let gain = gains.get(at).copied().unwrap_or(0.0);
             let scaled: Vec<[f64; D]> = detail.iter().map(|row| row.map(|c| gain * c)).collect();
             sum = level.join(&sum, &scaled);

@@ -76,7 +76,10 @@ fn breaks(curve: &Curve, [from, to]: [f64; 2], closed: bool) -> Vec<f64> {
     breaks.extend((1..pieces).map(share));
     breaks.push(to);
     breaks.sort_by(|a, b| if from < to { a.total_cmp(b) } else { b.total_cmp(a) });
-    breaks.dedup_by(|a, b| (*a - *b).abs() <= SAME_PARAMETER * (to - from).abs());
+    let same = |a: f64, b: f64| (a - b).abs() <= SAME_PARAMETER * (to - from).abs();
+    // Where an edge begins at the vertex of its hyperbola but for rounding, that is no break.
+    breaks.retain(|&t| t == to || !same(t, from) && !same(t, to));
+    breaks.dedup_by(|a, b| same(*a, *b));
     breaks
 }
 

@@ -5,24 +5,31 @@
 //! columns of the net. Control points that act on a bound of the face, or lie outside the band, stay as they are; the
 //! detail rises over a few control points beside them. So edges, vertices and neighbours stay valid.
 //!
-//! What it does not do: faces with weights, faces of other kinds.
+//! Planes, quadrics and swept surfaces become B-splines first. Weights stay: along a line the detail is multiplied by
+//! them and the product held exactly, at the cost of the degree.
+//!
+//! What it does not do: detail across a seam; it ends there.
 
+use super::embed::snapped;
 use super::error::TransferError;
 use super::measure::extent;
-use super::params::{Direction, FaceTarget, Measures, Params, Plan, SMOOTH, completed, in_file, notes};
-use super::prepare::Prepared;
-use super::settings::{Frame, Settings};
+use super::on_curve::prepared;
+use super::params::{
+    Direction, FaceTarget, Measures, Params, Plan, SMOOTH, TOLERANCE, completed, in_file, notes,
+};
+use super::prepare::{Prepared, prepare};
+use super::settings::{Existing, Frame, Settings, TargetBase};
 use super::spline::Spline;
-use super::transfer::{Transferred, transfer};
-use crate::brep::FaceId;
-use crate::geometry::nurbs::{GrevilleCollocation, NurbsSurface};
-use crate::geometry::{Carried, Surface};
+use super::transfer::{SourceDetail, Transferred, transfer_split};
+use super::weighted::{MOST_DEGREE, product_knots};
+use crate::geometry::nurbs::{GrevilleCollocation, KnotVector, NurbsSurface};
+use crate::geometry::{Curve, Surface};
 use crate::math::Vector3;
 use crate::model::{ChangeSet, Model};
 use crate::ops::OperationError;
 use crate::ops::net::Mask;
-use crate::ops::net::acting::{acting_on, closed_directions};
-use crate::ops::net::layout::{Layout, face_name, lay_out_on};
+use crate::ops::net::creases::mended;
+use crate::ops::net::spline_form::SplineForm;
 
 /// Control points over which detail rises beside one that stays.
 const RISE: usize = 3;
@@ -37,65 +44,91 @@ pub(super) fn plan(
     source: &Prepared,
     source_name: &str,
 ) -> Result<Plan, OperationError> {
-    let name = face_name(model, target.face);
-    let surface = spline_surface(model, target.face, &name)?;
-    let layout = lay_out_on(model, target.face, surface)?;
+    let unfit = |name: String, kind: &str| face_error(&name, &format!("it is a {kind}; {KINDS}")).into();
+    let form = SplineForm::of(model, target.face, unfit)?;
     // From here on the detail runs along the first parameter.
     let along = match target.direction {
-        Direction::U => surface.clamped(),
-        Direction::V => surface.swapped().clamped(),
+        Direction::U => form.surface.clamped(),
+        Direction::V => form.surface.swapped().clamped(),
     };
     let band = band(&along, target.across)?;
-    let unfit = || face_error(&name, "its lines have no form as splines");
-    let middle = Spline::of(&along.iso_curve_v(0.5 * (band.0 + band.1))).ok_or_else(unfit)?;
-    let mut settings = completed(params, &source.spline, &middle)?;
-    settings.ends = params.ends.unwrap_or(SMOOTH.min(source.spline.knots.degree()));
-    if settings.ends == 0 {
-        return Err(
-            face_error(&name, "free ends would move its edges; hold them in position at least").into()
-        );
-    }
-    let outward = outward(model, target);
-    settings.normals = [bulge(&source.spline), None];
-    let lines = Lines { along: &along, source: &source.spline, outward };
-    let named = |error| in_file(error, source_name, &name);
+    let middle = middle_line(&along, band, &form.name, params)?;
+    let settings = settings(model, params, target, source, &middle.spline, &form.name)?;
+    let named = |error| in_file(error, source_name, &form.name);
+    let lines = Lines {
+        along: &along,
+        source: SourceDetail::of(&source.spline, &settings).map_err(named)?,
+        outward: outward(model, target),
+        tolerance: params.tolerance.unwrap_or(TOLERANCE * middle.spline.size()),
+        name: &form.name,
+    };
     let made = lines.at(0.5 * (band.0 + band.1), &settings).map_err(named)?;
+    let knots = lines.knots(&made).ok_or_else(|| face_error(&form.name, "its degree is too high"))?;
     let refined =
-        refined(&along, &made.curve, band).ok_or_else(|| face_error(&name, "its knots cannot be refined"))?;
-    let field = lines.field(&refined, band, &made, &settings).map_err(named)?;
-    let weights = weights(&refined, &layout, target.direction, band, settings.ends);
+        refined(&along, &knots, band).ok_or_else(|| face_error(&form.name, "its knots cannot be refined"))?;
+    let field = lines.field(&refined, band, &settings).map_err(named)?;
+    let weights = weights(&refined, &form, target.direction, band, settings.ends);
     let new = added(&refined, &field, &weights).ok_or(TransferError::NotFinite)?;
     let still = new.net() == refined.net();
     if !still && weights.iter().all(|weight| *weight < 1.0) {
-        return Err(face_error(&name, "its bounds leave no room for detail").into());
+        return Err(face_error(&form.name, "its bounds leave no room for detail").into());
     }
     let new = if target.direction == Direction::V { new.swapped() } else { new };
-    let measures = measures(&name, &settings, source, [&along, &refined], &middle, &made);
-    let notes = notes(&measures, &name);
+    let measures = measures(&form.name, &settings, [source, &middle], [&along, &refined], &made);
+    let notes = notes(&measures, &form.name);
     let mut change_set = ChangeSet::default();
     if !still {
-        change_set.surfaces.insert(target.face, Surface::Nurbs(new));
+        change_set = form.changes(model, target.face, new, [false; 2]);
     }
     Ok(Plan { change_set, measures, notes })
 }
 
-fn face_error(face: &str, reason: &str) -> TransferError {
-    TransferError::Face { face: face.to_owned(), reason: reason.to_owned() }
+/// What detail can be laid over.
+const KINDS: &str = "detail is laid over a B-spline, a plane, a cylinder, a cone, a sphere, a torus, or a surface of \
+                     extrusion or revolution";
+
+/// The line in the middle of the band.
+fn middle_line(
+    along: &NurbsSurface,
+    band: (f64, f64),
+    name: &str,
+    params: &Params<'_>,
+) -> Result<Prepared, TransferError> {
+    let middle = Curve::Nurbs(along.iso_curve_v(0.5 * (band.0 + band.1)));
+    prepared(&middle, name, params.tolerance)
 }
 
-fn spline_surface<'a>(model: &'a Model, face: FaceId, name: &str) -> Result<&'a NurbsSurface, TransferError> {
-    match model.brep.surface_of(face) {
-        Carried::Read(Surface::Nurbs(surface)) if surface.is_rational() => {
-            Err(face_error(name, "its surface has weights; detail is laid over B-spline surfaces without"))
-        }
-        Carried::Read(Surface::Nurbs(surface)) => Ok(surface),
-        Carried::Read(other) => {
-            Err(face_error(name, &format!("it is a {}; detail is laid over B-spline surfaces", other.kind())))
-        }
-        Carried::Unread { entity, .. } => {
-            Err(face_error(name, &format!("it is a {entity}; detail is laid over B-spline surfaces")))
-        }
+/// The settings of all lines.
+fn settings(
+    model: &Model,
+    params: &Params<'_>,
+    target: &FaceTarget,
+    source: &Prepared,
+    middle: &Spline,
+    name: &str,
+) -> Result<Settings, TransferError> {
+    let mut settings = completed(params, &source.spline, middle)?;
+    settings.ends = params.ends.unwrap_or(SMOOTH.min(source.spline.knots.degree()));
+    if settings.ends == 0 {
+        return Err(face_error(name, "free ends would move its edges; hold them in position at least"));
     }
+    let plain =
+        matches!(model.brep.surface_of(target.face).read(), Some(Surface::Nurbs(s)) if !s.is_rational());
+    if settings.existing == Existing::Replace && !plain {
+        return Err(face_error(
+            name,
+            "its own detail can be replaced on a B-spline surface without weights only",
+        ));
+    }
+    if !plain {
+        settings.target_base = TargetBase::AsItIs;
+    }
+    settings.normals = [bulge(&source.spline), None];
+    Ok(settings)
+}
+
+fn face_error(face: &str, reason: &str) -> TransferError {
+    TransferError::Face { face: face.to_owned(), reason: reason.to_owned() }
 }
 
 /// Part of the domain within which a band ends at a knot.
@@ -139,56 +172,80 @@ const STRAIGHT: f64 = 1e-9;
 /// The parameter lines along, and what they get.
 struct Lines<'a> {
     along: &'a NurbsSurface,
-    source: &'a Spline,
+    source: SourceDetail,
     outward: f64,
+    /// Of the splines without weights that stand for lines with weights where frames are taken from.
+    tolerance: f64,
+    name: &'a str,
 }
 
 impl Lines<'_> {
     /// The transfer onto the line at a parameter across.
     fn at(&self, across: f64, settings: &Settings) -> Result<Transferred, TransferError> {
         let lost = || TransferError::DegenerateBase { curve: "target", at: across };
-        let line = Spline::of(&self.along.iso_curve_v(across)).ok_or_else(lost)?;
+        let line = Curve::Nurbs(self.along.iso_curve_v(across));
+        let line = prepare(&line, self.name, self.tolerance)?.spline;
         let start = settings.interval.unwrap_or(line.domain()).0;
         let mut settings = settings.clone();
         if settings.frame == Frame::Local {
             let normal = self.along.normal(start, across).ok_or_else(lost)?;
             settings.normals[1] = Some(normal * self.outward);
         }
-        transfer(&line, self.source, &settings)
+        transfer_split(&line, &self.source, &settings)
     }
 
-    /// Control points of the detail over the net of the refined surface, column by column.
+    /// Whether weights differ along a line: the detail then has to be multiplied by them.
+    fn weighted(&self) -> bool {
+        let columns = self.along.shape().1;
+        let net = self.along.net();
+        net.iter().zip(&net[columns..]).any(|(a, b)| a[3] != b[3])
+    }
+
+    /// Knots along that hold the surface, and the detail times the weights; `None` above the greatest degree.
+    fn knots(&self, made: &Transferred) -> Option<KnotVector> {
+        if !self.weighted() {
+            return Some(made.curve.knots.clone());
+        }
+        let own = self.along.knots_u();
+        let detail = &made.detail.knots;
+        let snapped = KnotVector::new(detail.degree(), snapped(own, detail)).ok()?;
+        product_knots(own, &snapped).filter(|knots| knots.degree() <= MOST_DEGREE)
+    }
+
+    /// Control points of the detail, times the weights, over the net of the refined surface, column by column.
     fn field(
         &self,
         refined: &NurbsSurface,
         band: (f64, f64),
-        made: &Transferred,
         settings: &Settings,
     ) -> Result<Vec<[f64; 3]>, TransferError> {
         let rows = refined.shape().0;
         let lost = |_| TransferError::NotFinite;
-        let collocation = GrevilleCollocation::new(refined.knots_v()).map_err(lost)?;
+        let collocation = [refined.knots_u(), refined.knots_v()].map(GrevilleCollocation::new);
+        let [u, v] = collocation;
+        let (u, v) = (u.map_err(lost)?, v.map_err(lost)?);
         let mut values = Vec::with_capacity(refined.net().len() * 3);
-        for &across in collocation.abscissae() {
+        for &across in v.abscissae() {
             // Beside the band nothing is added; there the nearest line of it serves as well.
-            let line = self.at(across.clamp(band.0, band.1), settings)?;
-            let detail = line.detail.elevated(made.curve.knots.degree()).ok_or(TransferError::NotFinite)?;
-            let points = detail.over(&made.curve.knots).points;
-            if points.len() != rows {
-                return Err(TransferError::NotFinite);
+            let detail = self.at(across.clamp(band.0, band.1), settings)?.detail;
+            let line = refined.iso_curve_v(across);
+            let column = values.len();
+            for &at in u.abscissae() {
+                let weight = line.homogeneous_point(at)[3];
+                values.extend(detail.at(at)[0].iter().map(|c| weight * c));
             }
-            values.extend(points.into_iter().flatten());
+            u.solve_rows(&mut values[column..], 3);
         }
-        collocation.solve_rows(&mut values, rows * 3);
+        v.solve_rows(&mut values, rows * 3);
         Ok(values.as_chunks::<3>().0.to_vec())
     }
 }
 
-/// The surface over the knots of a changed line along, and with spans enough across the band.
-fn refined(along: &NurbsSurface, line: &Spline, (from, to): (f64, f64)) -> Option<NurbsSurface> {
-    let elevated = along.elevated(line.knots.degree(), along.knots_v().degree()).ok()?;
+/// The surface over knots along that hold its own, and with spans enough across the band.
+fn refined(along: &NurbsSurface, knots: &KnotVector, (from, to): (f64, f64)) -> Option<NurbsSurface> {
+    let elevated = along.elevated(knots.degree(), along.knots_v().degree()).ok()?;
     let mut more = Vec::new();
-    for same in line.knots.knots().chunk_by(|a, b| a == b) {
+    for same in knots.knots().chunk_by(|a, b| a == b) {
         let lacking = same.len().saturating_sub(elevated.knots_u().multiplicity(same[0]));
         more.extend(std::iter::repeat_n(same[0], lacking));
     }
@@ -213,7 +270,7 @@ fn band_knots(knots: &[f64], from: f64, to: f64) -> Vec<f64> {
 /// For each control point, row by row along, what part of the detail it gets.
 fn weights(
     refined: &NurbsSurface,
-    layout: &Layout,
+    form: &SplineForm,
     direction: Direction,
     (from, to): (f64, f64),
     ends: usize,
@@ -233,8 +290,8 @@ fn weights(
         Direction::U => refined.clone(),
         Direction::V => refined.swapped(),
     };
-    for bound in layout.loops.iter().flatten() {
-        for at in acting_on(&bound.contour, &net, closed_directions(&net)).indices() {
+    for (_, acting) in form.acting_on_loops(&net) {
+        for at in acting.indices() {
             match direction {
                 Direction::U => stay.insert(at / columns, at % columns),
                 Direction::V => stay.insert(at % rows, at / rows),
@@ -251,31 +308,36 @@ fn weights(
     weights
 }
 
-/// The surface with the detail, column by column, that its weights, row by row, let through.
+/// The surface with the detail, column by column, that its weights, row by row, let through. Where quarters of a circle
+/// meet it stays as smooth as it was.
 fn added(refined: &NurbsSurface, field: &[[f64; 3]], weights: &[f64]) -> Option<NurbsSurface> {
     let (rows, columns) = refined.shape();
     let mut net = refined.net().to_vec();
+    let mut changed = Mask::empty(rows, columns);
     for (at, point) in net.iter_mut().enumerate() {
         let detail = field[at % columns * rows + at / columns];
-        let weight = weights[at] * point[3];
         for (c, d) in point.iter_mut().zip(detail) {
-            *c += weight * d;
+            *c += weights[at] * d;
+        }
+        if weights[at] > 0.0 {
+            changed.insert(at / columns, at % columns);
         }
     }
-    NurbsSurface::new(refined.knots_u().clone(), refined.knots_v().clone(), net).ok()
+    let over = |net| NurbsSurface::new(refined.knots_u().clone(), refined.knots_v().clone(), net).ok();
+    let new = over(net)?;
+    over(mended(refined, &new, &changed))
 }
 
 /// Figures: lengths are those of the middle line of the band, as if it got all of the detail.
 fn measures(
     name: &str,
     settings: &Settings,
-    source: &Prepared,
+    [source, middle]: [&Prepared; 2],
     [before, after]: [&NurbsSurface; 2],
-    middle: &Spline,
     made: &Transferred,
 ) -> Measures {
     let extent = extent(made);
-    let (start, end) = middle.domain();
+    let (start, end) = middle.spline.domain();
     Measures {
         target: name.to_owned(),
         levels_available: made.levels_available,
@@ -286,7 +348,7 @@ fn measures(
         greatest_detail: extent.greatest,
         detail_times_curvature: extent.fold,
         end_shift: extent.ends,
-        length: [middle, &made.curve].map(|curve| curve.length(start, end)),
+        length: [&middle.spline, &made.curve].map(|curve| curve.length(start, end)),
         degree: [before, after].map(|surface| surface.knots_u().degree()),
         control_points: [before, after].map(|surface| surface.net().len()),
         source_deviation: source.deviation,

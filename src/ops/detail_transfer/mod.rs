@@ -28,6 +28,6 @@ pub use error::TransferError;
 pub use params::{Direction, FaceTarget, Params, Plan, Source, Target};
 pub use plan::plan;
 pub use prepare::{Prepared, prepare};
-pub use settings::{Existing, Frame, LevelChoice, Scale, Settings};
+pub use settings::{Existing, Frame, LevelChoice, Scale, Settings, TargetBase};
 pub use spline::Spline;
-pub use transfer::{Transferred, transfer};
+pub use transfer::{SourceDetail, Transferred, transfer, transfer_split};

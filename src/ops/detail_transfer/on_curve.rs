@@ -4,6 +4,7 @@ use super::error::TransferError;
 use super::measure::extent;
 use super::params::{Measures, Params, Plan, TOLERANCE, completed, in_file, notes};
 use super::prepare::{Prepared, prepare};
+use super::settings::TargetBase;
 use super::spline::Spline;
 use super::transfer::transfer;
 use super::weighted;
@@ -29,7 +30,10 @@ pub(super) fn plan(
         Some(exact) => prepared(&Curve::Nurbs(exact.clone()), &target_name, params.tolerance)?,
         None => prepared(target, &target_name, params.tolerance)?,
     };
-    let settings = completed(params, &source.spline, &target.spline)?;
+    let mut settings = completed(params, &source.spline, &target.spline)?;
+    if target.deviation > 0.0 {
+        settings.target_base = TargetBase::AsItIs;
+    }
     let named = |error| in_file(error, source_name, &target_name);
     let made = transfer(&target.spline, &source.spline, &settings).map_err(named)?;
     let exact = match &rational {

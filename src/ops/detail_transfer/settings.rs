@@ -40,6 +40,16 @@ pub enum Existing {
     Replace,
 }
 
+/// Which curve the frames and the length of a target are taken from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TargetBase {
+    /// The target without its own detail.
+    Coarse,
+    /// The target as it is: its knots say nothing of its detail, because it is an approximation of a curve of another
+    /// kind.
+    AsItIs,
+}
+
 /// Parameters of a transfer between two splines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
@@ -57,6 +67,8 @@ pub struct Settings {
     pub interval: Option<(f64, f64)>,
     /// The target's own detail.
     pub existing: Existing,
+    /// Where frames and length are taken from.
+    pub target_base: TargetBase,
     /// Whether the source is run the other way first.
     pub reverse: bool,
     /// Angle about the target's tangent by which detail is turned, in radians; local frame only.
@@ -76,6 +88,7 @@ impl Default for Settings {
             ends: 1,
             interval: None,
             existing: Existing::Keep,
+            target_base: TargetBase::Coarse,
             reverse: false,
             roll: 0.0,
             normals: [None, None],

@@ -3,7 +3,7 @@
 use super::embed::{embedded, sum};
 use super::error::TransferError;
 use super::frames::{across, frames, least_aligned};
-use super::settings::{Existing, Frame, LevelChoice, Scale, Settings};
+use super::settings::{Existing, Frame, LevelChoice, Scale, Settings, TargetBase};
 use super::spline::Spline;
 use crate::geometry::bspline_wavelet::{Decomposition, WaveletError, coarsened, decompose};
 use crate::math::{Matrix3, Vector3, minimal_rotation};
@@ -25,6 +25,45 @@ pub struct Transferred {
     pub scale: f64,
 }
 
+/// The detail of a source, split once for any number of targets.
+#[derive(Debug, Clone)]
+pub struct SourceDetail {
+    /// The source as it is run.
+    spline: Spline,
+    split: Decomposition<3>,
+    base: Spline,
+    /// Length of the base.
+    length: f64,
+    levels_available: usize,
+    gains: Vec<f64>,
+}
+
+impl SourceDetail {
+    /// Splits a source into its base and the levels that the settings choose.
+    ///
+    /// # Errors
+    /// [`TransferError`]; the curve is named `source`.
+    pub fn of(source: &Spline, settings: &Settings) -> Result<Self, TransferError> {
+        let spline = if settings.reverse { source.reversed() } else { source.clone() };
+        let mut split = decomposed(&spline, usize::MAX, settings.ends, "source")?;
+        let levels_available = split.levels.len();
+        if levels_available == 0 {
+            return Err(no_levels(&spline));
+        }
+        let gains = gains(settings, levels_available)?;
+        if gains.len() < levels_available {
+            split = decomposed(&spline, gains.len(), settings.ends, "source")?;
+        }
+        let base = Spline { knots: split.base_knots.clone(), points: split.base.clone() };
+        let length = base.length(base.domain().0, base.domain().1);
+        let needs_length = settings.frame == Frame::Local || settings.scale == Scale::ArcLength;
+        if needs_length && length <= no_length(&spline) {
+            return Err(TransferError::DegenerateBase { curve: "source", at: spline.domain().0 });
+        }
+        Ok(Self { spline, split, base, length, levels_available, gains })
+    }
+}
+
 /// Adds chosen levels of the source's detail to the target.
 ///
 /// With gains of 0 the target stays; the result is linear in every gain.
@@ -32,43 +71,50 @@ pub struct Transferred {
 /// # Errors
 /// [`TransferError`]; curves are named `source` and `target`.
 pub fn transfer(target: &Spline, source: &Spline, settings: &Settings) -> Result<Transferred, TransferError> {
+    // What is wrong with the interval is told before the source is looked at.
+    checked_interval(target, settings)?;
+    transfer_split(target, &SourceDetail::of(source, settings)?, settings)
+}
+
+/// [`transfer`] with a source that was split under the same settings, but for the normals.
+///
+/// # Errors
+/// [`TransferError`]; curves are named `source` and `target`.
+pub fn transfer_split(
+    target: &Spline,
+    source: &SourceDetail,
+    settings: &Settings,
+) -> Result<Transferred, TransferError> {
     let domain = target.domain();
     let interval = checked_interval(target, settings)?;
-    let source = if settings.reverse { source.reversed() } else { source.clone() };
-    let mut split = decomposed(&source, usize::MAX, settings.ends, "source")?;
-    let levels_available = split.levels.len();
-    if levels_available == 0 {
-        return Err(no_levels(&source));
-    }
-    let gains = gains(settings, levels_available)?;
-    if gains.len() < levels_available {
-        split = decomposed(&source, gains.len(), settings.ends, "source")?;
-    }
-    let source_base = Spline { knots: split.base_knots.clone(), points: split.base.clone() };
-    let target_base = coarse_target(target, interval, source_base.span_count(), settings.ends)?;
-    let length = source_base.length(source_base.domain().0, source_base.domain().1);
+    let spans = source.base.span_count();
+    let target_base = match settings.target_base {
+        TargetBase::Coarse => coarse_target(target, interval, spans, settings.ends)?,
+        TargetBase::AsItIs => target.clone(),
+    };
     let scale = match settings.scale {
         Scale::Factor(factor) => factor,
-        Scale::ArcLength => target_base.length(interval.0, interval.1) / length,
+        Scale::ArcLength => target_base.length(interval.0, interval.1) / source.length,
     };
-    let needs_length = settings.frame == Frame::Local || settings.scale == Scale::ArcLength;
-    if needs_length && length <= no_length(&source) {
-        return Err(TransferError::DegenerateBase { curve: "source", at: source.domain().0 });
-    }
-    if settings.frame == Frame::Local {
-        turn(&mut split, &source_base, &target_base, interval, settings)?;
-    }
-    let scaled: Vec<f64> = gains.iter().map(|gain| gain * scale).collect();
-    let mut detail = Spline { knots: source.knots.clone(), points: split.detail(&scaled) };
+    let scaled: Vec<f64> = source.gains.iter().map(|gain| gain * scale).collect();
+    let points = if settings.frame == Frame::Local {
+        let turned = turned(source, &target_base, interval, settings)?;
+        source.split.detail_of(&turned, &scaled)
+    } else {
+        source.split.detail(&scaled)
+    };
+    let mut detail = Spline { knots: source.spline.knots.clone(), points };
     hold_ends(&mut detail, settings.ends);
     let mut detail = embedded(&detail, interval, domain, settings.ends)?;
     if settings.existing == Existing::Replace
-        && let Some(own) = own_detail(target, interval, source_base.span_count(), settings.ends)?
+        && let Some(own) = own_detail(target, interval, spans, settings.ends)?
     {
         detail = sum(&detail, &own)?;
     }
     let curve = sum(target, &detail)?;
-    let levels = gains.iter().enumerate().filter(|(_, gain)| **gain != 0.0).map(|(at, _)| at + 1).collect();
+    let gains = source.gains.iter().enumerate();
+    let levels = gains.filter(|(_, gain)| **gain != 0.0).map(|(at, _)| at + 1).collect();
+    let levels_available = source.levels_available;
     Ok(Transferred { curve, detail, target_base, levels_available, levels, scale })
 }
 
@@ -196,15 +242,15 @@ fn hold_ends(detail: &mut Spline, ends: usize) {
     }
 }
 
-/// Turns each wavelet's coefficients from the frame of the source to that of the target.
-fn turn(
-    split: &mut Decomposition<3>,
-    source: &Spline,
+/// Each wavelet's coefficients, turned from the frame of the source to that of the target.
+fn turned(
+    source: &SourceDetail,
     target: &Spline,
     (a, b): (f64, f64),
     settings: &Settings,
-) -> Result<(), TransferError> {
-    let (start, end) = source.domain();
+) -> Result<Vec<Vec<[f64; 3]>>, TransferError> {
+    let (split, base) = (&source.split, &source.base);
+    let (start, end) = base.domain();
     let centres: Vec<Vec<f64>> = split.levels.iter().map(|level| level.centres()).collect();
     let mut at: Vec<f64> = std::iter::once(start).chain(centres.iter().flatten().copied()).collect();
     at.sort_by(f64::total_cmp);
@@ -212,17 +258,16 @@ fn turn(
     let on_target: Vec<f64> =
         at.iter().map(|x| (a + (x - start) * ((b - a) / (end - start))).clamp(a, b)).collect();
     let lost = |curve: &'static str| move |at: f64| TransferError::DegenerateBase { curve, at };
-    let [n_source, n_target] = start_normals(source, start, target, a, settings)?;
-    let from = frames(source, &at, &n_source).map_err(lost("source"))?;
+    let [n_source, n_target] = start_normals(base, start, target, a, settings)?;
+    let from = frames(base, &at, &n_source).map_err(lost("source"))?;
     let to = frames(target, &on_target, &n_target).map_err(lost("target"))?;
     let turns: Vec<Matrix3<f64>> = from.iter().zip(&to).map(|(from, to)| to * from.transpose()).collect();
-    for (rows, centres) in split.details.iter_mut().zip(&centres) {
-        for (row, centre) in rows.iter_mut().zip(centres) {
-            let index = at.partition_point(|x| x < centre).min(turns.len() - 1);
-            *row = (turns[index] * Vector3::from(*row)).into();
-        }
-    }
-    Ok(())
+    let turn = |(row, centre): (&[f64; 3], &f64)| {
+        let index = at.partition_point(|x| x < centre).min(turns.len() - 1);
+        (turns[index] * Vector3::from(*row)).into()
+    };
+    let rows = split.details.iter().zip(&centres);
+    Ok(rows.map(|(rows, centres)| rows.iter().zip(centres).map(turn).collect()).collect())
 }
 
 /// Normals at the start of both curves, that of the target turned by the roll.

@@ -10,7 +10,7 @@ use crate::geometry::Curve;
 use crate::geometry::nurbs::{GrevilleCollocation, KnotVector, NurbsCurve3};
 
 /// Degree up to which a sum is made exactly: what other systems read.
-const MOST_DEGREE: usize = 9;
+pub(super) const MOST_DEGREE: usize = 9;
 
 /// The rational form of a curve that has no exact one without weights; `None` for every other.
 ///
@@ -57,7 +57,7 @@ fn homogeneous_sum(target: &NurbsCurve3, detail: &Spline, t: f64) -> [f64; 4] {
 
 /// Knots of the products of two spline spaces: each knot with the greater of its multiplicities, raised by the degree
 /// of the other space where it occurs.
-fn product_knots(a: &KnotVector, b: &KnotVector) -> Option<KnotVector> {
+pub(super) fn product_knots(a: &KnotVector, b: &KnotVector) -> Option<KnotVector> {
     let degree = a.degree() + b.degree();
     let mut values: Vec<f64> = a.knots().iter().chain(b.knots()).copied().collect();
     values.sort_by(f64::total_cmp);

@@ -3,12 +3,12 @@
 use super::PasteError;
 use super::base::{smoothed, with_net};
 use super::block::{Block, euclidean};
-use super::creases::mended;
 use super::displacement::displaced;
 use super::identify::{contour_polygon, refine_for_region};
 use super::laplacian::{biharmonic, poisson};
 use super::matching::{Matched, matched};
 use super::settings::{Feature, Ground, Method, Pasted, Settings};
+use crate::ops::net::creases::mended;
 
 /// Rows and columns of own control points that a region needs.
 const NEEDED: usize = 4;

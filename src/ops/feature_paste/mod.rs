@@ -13,7 +13,6 @@ mod across_seam;
 mod base;
 mod block;
 pub mod contour;
-mod creases;
 mod displacement;
 pub mod error;
 mod fit;

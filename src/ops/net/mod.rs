@@ -5,12 +5,14 @@
 
 pub mod acting;
 pub mod cells;
+pub mod creases;
 pub mod grams;
 pub mod grid_system;
 pub mod knot_removal;
 pub mod layout;
 pub mod polygon;
 pub mod sampling;
+pub mod spline_form;
 
 pub use cells::{CellGrid, Mask};
 pub use grid_system::GridSystem;

@@ -214,3 +214,57 @@ fn homed(mut contour: Contour, surface: &NurbsSurface) -> Contour {
     }
     contour
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::ParameterLine;
+    use crate::math::{Point3, Vector3};
+    use std::f64::consts::TAU;
+
+    /// A cylinder of radius 2 with a hole round a place, and what it becomes.
+    fn opened(at: f64) -> (NurbsSurface, NetBase, Contour) {
+        let frame = Frame { origin: Point3::origin(), x: Vector3::x(), y: Vector3::y(), z: Vector3::z() };
+        let surface = Surface::Cylinder { frame, radius: 2.0 }.to_nurbs((0.0, TAU), (0.0, 5.0)).unwrap();
+        let lines = [ParameterLine::Same, ParameterLine::Same];
+        let carrier = Carrier { surface: surface.clone(), lines };
+        let (held, scaled) = (Vec::new(), Vec::new());
+        let mut base =
+            NetBase { carrier, surface: surface.clone(), moved: Vec::new(), held, outer: None, scaled };
+        let points =
+            (0..12).map(|k| f64::from(k) * TAU / 12.0).map(|t| [at + 0.3 * t.cos(), 2.5 + 0.3 * t.sin()]);
+        let contour = Contour { points: points.collect(), margin: [0.0; 2] };
+        for direction in 0..2 {
+            cut_open(&mut base, direction, &[(Some(0), contour.clone())], &[]);
+        }
+        (surface, base, contour)
+    }
+
+    #[test]
+    fn a_hole_over_the_seam_moves_the_seam_to_the_other_side_and_back() {
+        let (whole, base, contour) = opened(0.1);
+        assert_eq!(base.moved.len(), 1);
+        let (start, end) = base.surface.domain().0;
+        assert!((start - (0.1 + 0.5 * TAU)).abs() < 1e-6 && (end - start - TAU).abs() < 1e-12);
+        let homed = homed(contour.clone(), &base.surface);
+        for (old, new) in contour.points.iter().zip(&homed.points) {
+            assert!(new[0] > start && new[0] < end);
+            let there = base.surface.point(new[0], new[1]);
+            let here = whole.point(old[0].rem_euclid(TAU), old[1]);
+            assert!((there - here).norm() < 1e-12);
+        }
+        let back = base.restored(&base.surface);
+        assert_eq!(back.domain(), whole.domain());
+        for k in 0..=40 {
+            let u = TAU * f64::from(k) / 40.0;
+            assert!((back.point(u, 1.0) - whole.point(u, 1.0)).norm() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_hole_away_from_the_seam_leaves_it() {
+        let (whole, base, _) = opened(3.0);
+        assert!(base.moved.is_empty());
+        assert_eq!(base.restored(&base.surface), whole);
+    }
+}

@@ -26,6 +26,8 @@ use crate::ops::constrained_scale::{Contour, ScaleError};
 const MEETS: f64 = 1e-9;
 /// Cosine of the angle from which two ends of a feature face so differently that one direction speaks for neither.
 const ASKEW: f64 = 0.866_025_403_784_438_6;
+/// Cosine below which a wall runs along a loop and not through it.
+const ALONG: f64 = 1e-3;
 /// Weight of no turn beside the ends of a feature: it decides the turn about their direction.
 const STAY: f64 = 1e-3;
 /// Vector area, as a part of the squared length, below which a loop encloses nothing.
@@ -213,6 +215,12 @@ impl Former<'_> {
         worst
     }
 
+    /// Whether a direction passes through a loop and not along it, so that sliding brings the loop onto its scaled surface.
+    fn crosses(&self, number: usize, axis: &Vector3<f64>) -> bool {
+        let normal = cofactor(&self.plain.linear) * self.plane(number).unwrap_or(self.shape(number).area);
+        normal.dot(axis).abs() > ALONG * normal.norm()
+    }
+
     /// How far a loop has to slide along `axis` beyond the motion of the whole to come onto its scaled surface.
     fn slide(&self, number: usize, whole: &Motion, axis: &Vector3<f64>) -> f64 {
         let side = |area: Vector3<f64>| if area.dot(&whole.axis) < 0.0 { -area } else { area };
@@ -271,6 +279,9 @@ impl Former<'_> {
     /// Whether a part can be one piece: its planes need one slide, and no two skins where walls shall slide.
     fn is_good(&self, part: &RigidPart, whole: &Motion, axis: &Vector3<f64>) -> bool {
         let axis = (whole.linear * axis).normalize();
+        if !part.loops.iter().all(|&k| self.crosses(k, &axis)) {
+            return false;
+        }
         let slides: Vec<f64> = part
             .loops
             .iter()

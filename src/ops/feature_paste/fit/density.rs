@@ -5,13 +5,11 @@ use super::field::Field;
 use crate::geometry::nurbs::{KnotVector, NurbsSurface};
 use crate::ops::feature_paste::PasteError;
 
-/// Parts of the greatest entry below which an entry of the parameter map says nothing about density.
-const SMALL_ENTRY: f64 = 1e-3;
 /// Slack of a count of parts: a span that fits in by rounding is not cut.
 const WHOLE: f64 = 1e-6;
 
 impl Field<'_> {
-    /// The target with spans under the feature as short as the source's are there.
+    /// The target with spans under the feature so short that none of them passes more than one span of the source.
     ///
     /// # Errors
     /// [`PasteError::NetTooLarge`] before anything is refined.
@@ -24,12 +22,11 @@ impl Field<'_> {
     ) -> Result<NurbsSurface, PasteError> {
         let spacing = [(self.source.knots_u(), 0), (self.source.knots_v(), 1)]
             .map(|(knots, k)| median_span(knots, self.window[k]));
-        let greatest = self.map.linear.iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
         let knots = [target.knots_u(), target.knots_v()];
+        let rates = inverse(&self.map.linear);
         let [u, v] = [0, 1].map(|k| {
-            let entries = (0..2).filter(|&m| self.map.linear[k][m].abs() >= SMALL_ENTRY * greatest);
-            let step =
-                entries.map(|m| self.map.linear[k][m].abs() * spacing[m]).fold(f64::INFINITY, f64::min);
+            let steps = (0..2).map(|m| spacing[m] / rates[m][k].abs());
+            let step = steps.fold(f64::INFINITY, f64::min);
             new_knots(knots[k], extent(corners, k), step / f64::from(1 << level))
         });
         let points = (target.shape().0 + u.len()).saturating_mul(target.shape().1 + v.len());
@@ -38,6 +35,12 @@ impl Field<'_> {
         }
         Ok(target.refined_u(&u)?.refined_v(&v)?)
     }
+}
+
+/// How fast the source's parameters run with the target's: rows are the source's.
+fn inverse([[a, b], [c, d]]: &[[f64; 2]; 2]) -> [[f64; 2]; 2] {
+    let determinant = a * d - b * c;
+    [[*d, -b], [-c, *a]].map(|row| row.map(|x| x / determinant))
 }
 
 /// Knots that leave no span within a range longer than `step`, ascending.

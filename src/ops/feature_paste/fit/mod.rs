@@ -10,12 +10,12 @@ mod system;
 
 use super::PasteError;
 use super::base::{smoothed, with_net};
-use super::creases::mended;
 use super::frames::frame_of;
 use super::identify::{contour_polygon, refine_for_region};
 use super::settings::{Existing, Feature, Ground, Method, Mirror, ParameterMap, Pasted, Settings};
 use crate::geometry::nurbs::{KnotVector, NurbsSurface};
 use crate::math::Matrix2;
+use crate::ops::net::creases::mended;
 use crate::ops::net::{CellGrid, Mask, Polygon};
 use deviation::greatest_deviation;
 use field::Field;
@@ -26,7 +26,7 @@ const NEEDED: usize = 6;
 /// Degree to which a target of lower degree is raised, unless the source's is lower.
 pub(super) const DEGREE: usize = 3;
 /// Times the density may be doubled.
-const MAX_LEVEL: u32 = 3;
+const MAX_LEVEL: u32 = 4;
 /// Part of a domain by which a region may reach past the border through rounding.
 const PAST_BORDER: f64 = 1e-9;
 
@@ -62,7 +62,10 @@ pub(super) fn paste(
                 offset: None,
             });
         }
-        if level == MAX_LEVEL {
+        // A net that is twice as dense gains the order of its splines at best.
+        let order = target.knots_u().degree().max(target.knots_v().degree()) as i32 + 1;
+        let within_reach = fitted.error * 0.5_f64.powi(order * (MAX_LEVEL - level) as i32);
+        if within_reach > settings.tolerance || level == MAX_LEVEL {
             let (error, tolerance, points) = (fitted.error, settings.tolerance, refined.net().len());
             return Err(PasteError::FitToleranceNotReached { error, tolerance, points });
         }
@@ -117,6 +120,18 @@ fn refuse_outside(corners: &[[f64; 2]; 4], target: &NurbsSurface) -> Result<(), 
     Ok(())
 }
 
+/// Part of a domain by which a window is drawn in, above what counts as on a knot line.
+const DRAWN_IN: f64 = 4e-9;
+
+/// The window a little smaller: a side on a knot line would take in the cells beyond it, however large.
+fn drawn_in(corners: &[[f64; 2]; 4], domains: [(f64, f64); 2]) -> [[f64; 2]; 4] {
+    let extents = [0, 1].map(|k| extent(corners, k));
+    let centre = extents.map(|(low, high)| 0.5 * (low + high));
+    let share = |k: usize| DRAWN_IN * (domains[k].1 - domains[k].0) / (centre[k] - extents[k].0);
+    let part = share(0).max(share(1)).min(0.5);
+    corners.map(|corner| [0, 1].map(|k| corner[k] + part * (centre[k] - corner[k])))
+}
+
 struct Fitted {
     surface: NurbsSurface,
     free: Mask,
@@ -136,7 +151,8 @@ fn fit(
     settings: &Settings,
 ) -> Result<Fitted, PasteError> {
     let (u, v) = refined.domain();
-    let polygon = Polygon::new(corners, [0.0; 2], [u, v]).map_err(|_| PasteError::ContourDegenerate)?;
+    let polygon = Polygon::new(&drawn_in(corners, [u, v]), [0.0; 2], [u, v])
+        .map_err(|_| PasteError::ContourDegenerate)?;
     let grid = CellGrid::new(refined.knots_u(), refined.knots_v());
     let mut cells = grid.met_by(&polygon);
     cells.unite(&grid.inside(&polygon));

@@ -5,13 +5,13 @@
 
 use super::super::error::PasteError;
 use super::super::settings::ParameterMap;
-use super::hermite::followed;
 use crate::brep::{Brep, ParameterLoop};
 use crate::geometry::nurbs::{KnotVector, NurbsCurve2, NurbsCurve3, NurbsSurface};
 use crate::geometry::{Curve, Curve2d};
 use crate::math::{Frame, Point3, Vector3};
 use crate::model::ChangeSet;
 use crate::model::change_set::NewBound;
+use crate::ops::net::spline_form::followed;
 
 /// The edges of a hole in order, each in the parameters of its surface.
 pub type Hole = Vec<NurbsCurve2>;

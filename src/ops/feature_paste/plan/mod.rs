@@ -3,8 +3,6 @@
 //! The source may be a face of another file, in other units. Loops of the target are kept clear of the feature, or
 //! the paste is refused. Pure: no I/O. All or nothing.
 
-mod exact;
-mod hermite;
 mod holes;
 mod measure;
 mod source;
@@ -26,6 +24,7 @@ use crate::model::{ChangeSet, Model};
 use crate::ops::OperationError;
 use crate::ops::net::Mask;
 use crate::ops::net::layout::face_name;
+use crate::ops::net::spline_form::carry_tolerance;
 
 /// What holds the feature on the source face. Lengths are in the source's units.
 #[derive(Debug, Clone, PartialEq)]
@@ -144,7 +143,7 @@ pub fn plan(model: &Model, params: &Params<'_>) -> Result<Plan, OperationError> 
         notes.push(note("paste.holes-closed", Severity::Warning, message));
     }
     let mut holes: Vec<Hole> = Vec::new();
-    let mut surface = target.surface.clone();
+    let mut surface = target.form.surface.clone();
     let mut places: Vec<PlaceMeasures> = Vec::new();
     let mut regions: Vec<[(f64, f64); 2]> = Vec::new();
     let mut seam_moved = [false; 2];
@@ -167,7 +166,7 @@ pub fn plan(model: &Model, params: &Params<'_>) -> Result<Plan, OperationError> 
         }
         if carries {
             for hole in &source.holes {
-                holes.push(holes::carried(hole, &one.pasted.map, &one.pasted.surface, target.round)?);
+                holes.push(holes::carried(hole, &one.pasted.map, &one.pasted.surface, target.form.round)?);
             }
         }
         places.push(measure::measure(place, &one.pasted, one.region, one.cut));
@@ -185,12 +184,12 @@ pub fn plan(model: &Model, params: &Params<'_>) -> Result<Plan, OperationError> 
         control_points: [before, surface.net().len()],
         holes: holes.len(),
         hole_error: None,
-        converted: target.converted.map(str::to_owned),
-        pcurve_error: target.converted.map(|_| target.pcurve_error),
+        converted: target.form.converted.map(str::to_owned),
+        pcurve_error: target.form.converted.map(|_| target.form.pcurve_error),
         seam_moved,
         places,
     };
-    let mut change_set = target.changes(model, params.target, surface.clone(), seam_moved);
+    let mut change_set = target.form.changes(model, params.target, surface.clone(), seam_moved);
     if !holes.is_empty() {
         let (bounds, error) = new_bounds(model, params.target, &surface, &holes, &mut change_set)?;
         measures.hole_error = Some(error);
@@ -208,7 +207,7 @@ fn new_bounds(
     changes: &mut ChangeSet,
 ) -> Result<(Vec<NewBound>, f64), OperationError> {
     let uncertainty = model.context_of(face).uncertainty.map(|t| t.0);
-    let tolerance = exact::carry_tolerance(uncertainty, surface.bounding_box().diagonal());
+    let tolerance = carry_tolerance(uncertainty, surface.bounding_box().diagonal());
     let sense = model.brep.faces[face].same_sense;
     let mut bounds = Vec::new();
     let mut worst = 0.0_f64;
@@ -250,7 +249,7 @@ fn pasted_at(
         angle: snapped(place.angle + turn_to(surface, at, place.along)?),
         tolerance: params.tolerance.unwrap_or(TOLERANCE * source.size * greatest),
         // An exact quadric has nothing in the feature's way.
-        existing: match (params.settings.existing, target.converted) {
+        existing: match (params.settings.existing, target.form.converted) {
             (Existing::Replace, Some(_)) => Existing::Keep,
             (existing, _) => existing,
         },
@@ -258,7 +257,7 @@ fn pasted_at(
     };
     target.refuse_method(&settings)?;
     let feature = Feature { source: &source.surface, contour: &source.contour, anchor: source.anchor };
-    let crossed = paste_across(&feature, &Ground { target: surface, at }, &settings, target.round)?;
+    let crossed = paste_across(&feature, &Ground { target: surface, at }, &settings, target.form.round)?;
     let (mut pasted, region) = (crossed.pasted, crossed.region);
     let cut = keep_loops(target, &mut pasted, params.loops)?;
     Ok(PastedAt { pasted, region, cut })
@@ -305,7 +304,7 @@ fn keep_loops(
     loops: TargetLoops,
 ) -> Result<usize, OperationError> {
     let mut stay = Mask::empty(pasted.changed.shape().0, pasted.changed.shape().1);
-    for (name, acting) in target.acting_on_loops(&pasted.refined) {
+    for (name, acting) in target.form.acting_on_loops(&pasted.refined) {
         if acting.meets(&pasted.changed) {
             if loops == TargetLoops::Refuse {
                 return Err(PasteError::TargetLoopInRegion { held: name }.into());
@@ -361,7 +360,7 @@ pub fn circular_pattern(
 /// [`PasteError::SurfaceKind`], [`PasteError::PlaceOffFace`], [`PasteError::SingularParametrisation`].
 pub fn direction_at(model: &Model, face: FaceId, place: &Place) -> Result<Vector3<f64>, OperationError> {
     let target = target::Target::of(model, face)?;
-    let at = target.locate(&target.surface, place)?;
-    let frame = super::frames::frame_at(&target.surface, at, "target")?;
+    let at = target.locate(&target.form.surface, place)?;
+    let frame = super::frames::frame_at(&target.form.surface, at, "target")?;
     Ok(frame.column(0).into_owned())
 }

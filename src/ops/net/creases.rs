@@ -1,11 +1,11 @@
 //! Knots where a net could fold: an exact cylinder is made of quarters that meet at full multiplicity, and only the
 //! places of its control points keep it smooth there.
 //!
-//! After a paste the control points on such a line go where the tangents of both sides meet again, so that the
+//! After a change the control points on such a line go where the tangents of both sides meet again, so that the
 //! result is as smooth in direction as the target was. A crease that the target has stays.
 
+use super::cells::Mask;
 use crate::geometry::nurbs::{KnotVector, NurbsSurface};
-use crate::ops::net::Mask;
 
 /// Distance of a control point from the line through its neighbours, over their distance, below which the surface goes
 /// on straight there.
@@ -34,8 +34,10 @@ fn folds(knots: &KnotVector) -> Vec<Fold> {
     full.map(one).filter(|f| f.line > 0 && f.shares.iter().all(|s| s.is_finite())).collect()
 }
 
-/// The net of the result with its folds mended; `refined` is the target over the same knots.
-pub(super) fn mended(refined: &NurbsSurface, surface: &NurbsSurface, changed: &Mask) -> Vec<[f64; 4]> {
+/// The net of the result with its folds mended; `refined` is the target over the same knots, `changed` says which
+/// control points may move.
+#[must_use]
+pub fn mended(refined: &NurbsSurface, surface: &NurbsSurface, changed: &Mask) -> Vec<[f64; 4]> {
     let (rows, columns) = refined.shape();
     let old = refined.net();
     let mut net = surface.net().to_vec();

@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 use super::hermite::followed;
 use crate::brep::{CoedgeId, FaceId, ParameterLoop, edge_range};
 use crate::geometry::nurbs::{NurbsCurve2, NurbsSurface};
-use crate::geometry::{Curve, Curve2d, ParameterLine, Surface};
-use crate::math::{Point2, Vector2};
+use crate::geometry::{Curve2d, ParameterLine, Surface};
+use crate::math::Point2;
 use crate::model::Model;
 
 /// Part of a face's range of parameters by which its surface reaches beyond the bounds.
@@ -34,7 +34,8 @@ pub(super) struct Exact {
 }
 
 /// Tolerance of a curve that is laid onto a surface of this size, in a file of this uncertainty.
-pub(super) fn carry_tolerance(uncertainty: Option<f64>, size: f64) -> f64 {
+#[must_use]
+pub fn carry_tolerance(uncertainty: Option<f64>, size: f64) -> f64 {
     let allowed = uncertainty.map_or(f64::INFINITY, |t| OF_UNCERTAINTY * t);
     allowed.clamp(CARRIED.1 * size, CARRIED.0 * size)
 }
@@ -223,44 +224,5 @@ impl Carrying<'_> {
         let from = [point.x + self.shift[0], point.y + self.shift[1]];
         let (to, stretch) = (self.exact.image(from), self.exact.slope(from));
         (to, [slope.x * stretch[0], slope.y * stretch[1]])
-    }
-}
-
-/// What is known of a seam: an edge that its face uses twice, on a border where the surface meets itself.
-#[derive(Debug, Clone)]
-pub(super) struct SeamUse {
-    /// The use.
-    pub coedge: CoedgeId,
-    /// The direction that repeats: 0 for `u`.
-    pub closed: usize,
-    /// Whether this use lies at the end of the range.
-    pub at_end: bool,
-    /// Range of the other parameter.
-    pub along: (f64, f64),
-    /// Whether the edge's curve runs as that parameter does.
-    pub forward: bool,
-}
-
-impl SeamUse {
-    /// New curve of the edge and in parameters.
-    pub fn curves(&self, surface: &NurbsSurface) -> Option<(Curve, Curve2d)> {
-        let knots = [surface.knots_u(), surface.knots_v()];
-        let (first, last) = knots[self.closed].domain();
-        let whole = if self.closed == 0 { surface.iso_curve_u(first) } else { surface.iso_curve_v(first) };
-        let (low, high) = whole.knots().domain();
-        let (from, to) = (self.along.0.max(low), self.along.1.min(high));
-        let inner = from > low || to < high;
-        let piece = if inner { whole.piece(from, to).ok()? } else { whole };
-        let mut origin = Point2::origin();
-        let mut direction = Vector2::zeros();
-        origin[self.closed] = if self.at_end { last } else { first };
-        direction[1 - self.closed] = if self.forward { 1.0 } else { -1.0 };
-        let curve = if self.forward {
-            piece
-        } else {
-            origin[1 - self.closed] = from + to;
-            piece.reversed()
-        };
-        Some((Curve::Nurbs(curve), Curve2d::Line { origin, direction }))
     }
 }

@@ -8,12 +8,14 @@ const MAX_HALVINGS: u32 = 12;
 const COMPARED: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// Point and derivative of a curve at a parameter.
-pub(super) type Evaluate<'a, const N: usize> = &'a dyn Fn(f64) -> ([f64; N], [f64; N]);
+pub type Evaluate<'a, const N: usize> = &'a dyn Fn(f64) -> ([f64; N], [f64; N]);
 
 /// A piecewise cubic: knots and points.
 #[derive(Debug, Clone)]
-pub(super) struct Cubic<const N: usize> {
+pub struct Cubic<const N: usize> {
+    /// Knots.
     pub knots: KnotVector,
+    /// Points.
     pub points: Vec<[f64; N]>,
     /// Greatest deviation met.
     pub error: f64,
@@ -22,7 +24,8 @@ pub(super) struct Cubic<const N: usize> {
 /// Follows a curve from break to break; `off` measures the distance of a point from where the curve is at a parameter.
 ///
 /// `None` for breaks that do not ascend.
-pub(super) fn followed<const N: usize>(
+#[must_use]
+pub fn followed<const N: usize>(
     breaks: &[f64],
     at: Evaluate<'_, N>,
     off: &dyn Fn([f64; N], f64) -> f64,
