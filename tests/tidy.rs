@@ -179,7 +179,7 @@ fn jobs_of_the_samples_are_valid() {
     let jobs = files("samples", &["toml"]);
     assert!(jobs.len() >= 6, "the samples lack jobs");
     for path in jobs.into_iter().filter(|path| !path.ends_with("baseline.toml")) {
-        let job = resurf::job::read::read(&read(&path), resurf::job::read::Syntax::Toml);
+        let job = resurf::job::text::read(&read(&path), resurf::job::text::Syntax::Toml);
         assert!(job.is_ok(), "{}: {job:?}", path.display());
     }
 }

@@ -13,10 +13,10 @@ use super::queue;
 use super::record;
 use super::supervise::supervise;
 use super::task::{Order, Task, Word};
-use crate::job::illustrate::Illustration;
 use crate::job::output::Staged;
 use crate::job::plan::Part;
 use crate::job::report::{PartReport, Report, Status};
+use crate::job::side::illustrate::Illustration;
 
 /// A part with its pictures, or why there are none.
 #[derive(Debug)]

@@ -9,8 +9,8 @@ use super::supervise::supervise;
 use super::task::{JobText, Order, Task, Word};
 use crate::job::failure::PartError;
 use crate::job::file::ValidatorName;
-use crate::job::measured::Measures;
 use crate::job::plan::Part;
+use crate::job::report::measured::Measures;
 use crate::job::run::Mode;
 
 /// Code and message of what went wrong.

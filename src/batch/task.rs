@@ -6,12 +6,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::job::Job;
 use crate::job::file::ValidatorName;
-use crate::job::illustrate::Illustration;
-use crate::job::measured::Measures;
 use crate::job::plan::{self, Part, PlanError};
-use crate::job::read::{JobFileError, Syntax, read};
 use crate::job::report::PartReport;
+use crate::job::report::measured::Measures;
 use crate::job::run::{Mode, Stage};
+use crate::job::side::illustrate::Illustration;
+use crate::job::text::{JobFileError, Syntax, read};
 
 /// A job as it stands in its file: every worker reads the same text, whatever happens to the file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]

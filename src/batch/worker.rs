@@ -5,9 +5,9 @@ use std::io::{BufRead, BufReader, Read, Write};
 use super::system;
 use super::task::{Order, Task, Word};
 use crate::job::failure::{PartError, code};
-use crate::job::illustrate::illustrate;
-use crate::job::measured::measured;
+use crate::job::report::measured::measured;
 use crate::job::run::run_part;
+use crate::job::side::illustrate::illustrate;
 
 /// Longest order: a job's text and two paths.
 const LONGEST: u64 = 1 << 28;

@@ -7,10 +7,10 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::batch::limits::MemorySize;
 use crate::batch::{Limits, Share};
-use crate::job::detail_file::CurveSelector;
+use crate::job::file::detail::CurveSelector;
+use crate::job::file::paste::RegionSetting;
+use crate::job::file::selector::Selector;
 use crate::job::file::{Seconds, ValidatorName};
-use crate::job::paste_file::RegionSetting;
-use crate::job::selector::Selector;
 
 /// Freeform operations on exchanged CAD parts, with everything else kept byte for byte.
 ///

@@ -12,9 +12,9 @@ use crate::diagnostic::Severity;
 use crate::job::failure::PartError;
 use crate::job::file::ValidateSettings;
 use crate::job::judge::{first_missing, judge};
-use crate::job::measure::Figures;
 use crate::job::own_check::{OwnFinding, own_findings};
 use crate::job::part::Read;
+use crate::job::report::measure::Figures;
 use crate::job::report::{DiagnosticReport, Failure};
 use crate::validate::Verdict;
 

@@ -6,10 +6,10 @@ use super::arguments::{Aspect, DiffArguments};
 use super::exit_code;
 use super::print::Printer;
 use super::show;
-use crate::job::difference::{Compared, json, lines};
 use crate::job::failure::PartError;
 use crate::job::output::Staged;
 use crate::job::part::Read;
+use crate::job::report::difference::{Compared, json, lines};
 use crate::model::Model;
 
 /// Compares two parts and gives the exit code: 1 when they differ.

@@ -6,12 +6,12 @@ use super::arguments::InspectArguments;
 use super::exit_code;
 use super::print::Printer;
 use super::show;
-use crate::job::contents::{Contents, TreeEntry, contents};
 use crate::job::failure::PartError;
-use crate::job::measure::{BodyMeasures, measure_bodies, measure_face};
 use crate::job::operate::OperateError;
+use crate::job::operate::select;
 use crate::job::part::Read;
-use crate::job::select;
+use crate::job::report::contents::{Contents, TreeEntry, contents};
+use crate::job::report::measure::{BodyMeasures, measure_bodies, measure_face};
 
 /// Inspects a part and gives the exit code.
 pub fn inspect(arguments: &InspectArguments, printer: &mut Printer) -> u8 {

@@ -13,9 +13,9 @@ use crate::batch::{self, Interrupt, JobText, Run};
 use crate::diagnostic::Severity;
 use crate::job::judge::first_missing;
 use crate::job::plan::{self, Part};
-use crate::job::read::JobFileError;
 use crate::job::report::{PartReport, Report, WritePath};
 use crate::job::run::Mode;
+use crate::job::text::JobFileError;
 
 /// Runs a job and gives the exit code.
 pub fn run(arguments: &RunArguments, printer: &mut Printer) -> u8 {

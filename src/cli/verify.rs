@@ -7,7 +7,7 @@ use super::exit_code;
 use super::print::Printer;
 use super::show;
 use crate::diagnostic::Severity;
-use crate::job::proof::{self, Verification};
+use crate::job::side::proof::{self, Verification};
 
 /// Checks a sheet and gives the exit code.
 pub fn verify(arguments: &VerifyArguments, printer: &mut Printer) -> u8 {

@@ -1,9 +1,9 @@
 //! A part made anew in the other format, and read again before it is believed.
 
-use super::failure::PartError;
-use super::part::Read;
 use crate::diagnostic::Severity;
 use crate::document::{Conversion, Stamp, converted};
+use crate::job::failure::PartError;
+use crate::job::part::Read;
 use crate::model::{Inventory, Model};
 
 /// The bytes of the part in the other format, with each loss among the diagnostics of what was read.
@@ -14,7 +14,7 @@ use crate::model::{Inventory, Model};
 pub fn made(read: &mut Read, conversion: Conversion, name: &str) -> Result<Vec<u8>, PartError> {
     let model = read.model();
     read.refuse_errors()?;
-    let stamp = Stamp { time: super::clock::time_stamp(), preprocessor: super::run::program() };
+    let stamp = Stamp { time: crate::job::clock::time_stamp(), preprocessor: crate::job::run::program() };
     let bytes = converted(&model, conversion, name, &stamp, &mut read.diagnostics)?;
     let faults = faults(&model, bytes.clone(), conversion)?;
     if faults.is_empty() { Ok(bytes) } else { Err(PartError::Check(faults)) }

@@ -1,10 +1,10 @@
 //! Why a part fails, and which exit code that is.
 
-use super::operate::OperateError;
-use super::output::FileError;
-use super::report::Failure;
-use super::run::Stage;
 use crate::document::{CompressedError, ConvertError, LowerError, OpenError};
+use crate::job::operate::OperateError;
+use crate::job::output::FileError;
+use crate::job::report::Failure;
+use crate::job::run::Stage;
 use crate::validate::ValidateError;
 
 /// The first thing that kept a part from being written.

@@ -1,14 +1,14 @@
 //! What a file draws and says of faces that a job has changed: kept as it was, and named.
 //!
 //! Whether a dimension or a tolerance still holds is for people to say. Validation properties are
-//! [`validation_property`](super::validation_property)'s concern.
+//! [`validation_property`](crate::job::validation_property)'s concern.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::report::DiagnosticReport;
-use super::restate::Changed;
 use crate::brep::EdgeId;
 use crate::document::Document;
+use crate::job::report::DiagnosticReport;
+use crate::job::restate::Changed;
 use crate::model::{Annotation, AnnotationKind, Element, Model};
 
 /// Annotations of one kind that are named singly; the rest is counted.

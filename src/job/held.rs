@@ -3,8 +3,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::own_check::changed_faces;
-use super::proof::Held;
+use crate::job::own_check::changed_faces;
+use crate::job::side::proof::Held;
 use crate::math::Affine;
 use crate::model::{ChangeSet, Model, Origin};
 use crate::ops::constrained_scale::plan::HeldPiece;

@@ -6,10 +6,10 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use super::failure::PartError;
-use super::file::{SideFormat, ValidateSettings, ValidatorName};
-use super::output::FileError;
 use crate::brep::{BodyId, BodyKind, FaceId};
+use crate::job::failure::PartError;
+use crate::job::file::{SideFormat, ValidateSettings, ValidatorName};
+use crate::job::output::FileError;
 use crate::mesh::{Mesh, Part, Scene, Tolerances, glb, off, stl, tessellate_bodies, three_mf};
 use crate::model::{Colour, Instances, Model};
 use crate::units::{Length, LengthUnit};
@@ -237,7 +237,8 @@ fn mesh_of(model: &Model, body: BodyId, chord: Option<f64>) -> Result<Mesh, Part
         tolerances.chord = chord;
     }
     tessellate_bodies(&model.brep, &[body], &tolerances).map_err(|error| {
-        let face = error.face().map(|face| format!("{}: ", super::select::describe(model, face)));
+        let face =
+            error.face().map(|face| format!("{}: ", crate::job::operate::select::describe(model, face)));
         PartError::Mesh(format!("{}{error}", face.unwrap_or_default()))
     })
 }
@@ -266,7 +267,7 @@ pub fn chord(model: &Model, tolerance: Length, key: &'static str) -> Result<f64,
 
 /// Diagonal of the box of the vertices; 1 when they all coincide.
 fn diagonal(model: &Model) -> f64 {
-    let extents = super::measure::Figures::of(model).vertex_extents;
+    let extents = crate::job::report::measure::Figures::of(model).vertex_extents;
     let length = extents.map_or(0.0, |[least, greatest]| {
         (0..3).map(|k| (greatest[k] - least[k]).powi(2)).sum::<f64>().sqrt()
     });

@@ -4,12 +4,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-pub use super::finding::OwnFinding;
-use super::finding::tolerance;
-use super::validation_property::stale_properties;
 use crate::brep::check::{self, Finding};
 use crate::brep::{Arena, FaceId, VertexId};
 use crate::document::Document;
+pub use crate::job::report::finding::OwnFinding;
+use crate::job::report::finding::tolerance;
+use crate::job::validation_property::stale_properties;
 use crate::model::{ChangeSet, Model, Origin};
 
 /// Factor within which two measurements of one gap agree: samples of an edge fall on other places once its

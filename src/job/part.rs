@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use super::failure::PartError;
-use super::output::FileError;
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity};
 use crate::document::{Document, Format, Unpacked};
+use crate::job::failure::PartError;
+use crate::job::output::FileError;
 use crate::model::Model;
 use crate::source::Source;
 

@@ -7,8 +7,8 @@ use globset::{GlobBuilder, GlobMatcher};
 use serde::{Deserialize, Serialize};
 
 use super::Job;
-use super::file::{Operation, SideFile};
 use crate::document::Format;
+use crate::job::file::{Operation, SideFile};
 
 /// One part of a run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -232,7 +232,7 @@ fn nearest_file(path: &Path, name: &str) -> Option<String> {
     let folder = std::fs::read_dir(parent).ok()?;
     let mut names: Vec<String> = folder.filter_map(|e| e.ok()?.file_name().into_string().ok()).collect();
     names.sort();
-    super::nearest::nearest(name, names.iter().map(String::as_str)).map(str::to_owned)
+    crate::job::text::nearest::nearest(name, names.iter().map(String::as_str)).map(str::to_owned)
 }
 
 /// Puts the parts of an input's path into a template.
@@ -266,7 +266,7 @@ mod tests {
     fn job(inputs: &[&str], output: &str) -> Job {
         let list = inputs.iter().map(|i| format!("{i:?}")).collect::<Vec<_>>().join(",");
         let text = format!("version = 1\ninputs = [{list}]\noutput = {output:?}\n");
-        super::super::read::read(&text, super::super::read::Syntax::Toml).expect("a valid job")
+        crate::job::text::read(&text, crate::job::text::Syntax::Toml).expect("a valid job")
     }
 
     fn folder(names: &[&str]) -> tempfile::TempDir {

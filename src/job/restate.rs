@@ -8,10 +8,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::finding::tolerance;
-use super::validation_property::{DIFFERS, Item, Quantity, items, statements};
 use crate::brep::mass_properties::Quadrature;
 use crate::brep::{BodyId, FaceId};
+use crate::job::report::finding::tolerance;
+use crate::job::validation_property::{DIFFERS, Item, Quantity, items, statements};
 use crate::model::{Annotation, ChangeSet, Element, Mass, Model, Origin, Subject};
 
 /// What became of a statement about a changed shape.

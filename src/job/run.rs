@@ -8,22 +8,22 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use super::failure::PartError;
-use super::file::{Job, Operation};
-use super::flagged::flagged;
-use super::held::HeldRecords;
-use super::judge;
-use super::measure::Figures;
-use super::operate::{Operated, operate};
-use super::output::Staged;
-use super::own_check::{OwnFinding, changed_faces, findings_of_faces, new_findings, with_neighbours};
-use super::part::Read;
-use super::plan::Part;
-use super::report::{DiagnosticReport, Edits, PartReport, Status, WritePath};
-use super::restate::{self, Outcome, restated};
-use super::side::{self, Made};
 use crate::brep::FaceId;
 use crate::document::{Document, Stamp};
+use crate::job::failure::PartError;
+use crate::job::file::{Job, Operation};
+use crate::job::flagged::flagged;
+use crate::job::held::HeldRecords;
+use crate::job::judge;
+use crate::job::operate::{Operated, operate};
+use crate::job::output::Staged;
+use crate::job::own_check::{OwnFinding, changed_faces, findings_of_faces, new_findings, with_neighbours};
+use crate::job::part::Read;
+use crate::job::plan::Part;
+use crate::job::report::measure::Figures;
+use crate::job::report::{DiagnosticReport, Edits, PartReport, Status, WritePath};
+use crate::job::restate::{self, Outcome, restated};
+use crate::job::side::{self, Made};
 use crate::model::change_set::{NewFace, NewSurface};
 use crate::model::{AnnotationKind, Balance, ChangeSet, Model, Origin};
 
@@ -76,7 +76,7 @@ pub fn program() -> String {
 
 /// Runs a job on one part. `watch` is told what is being done.
 pub fn run_part(job: &Job, part: &Part, mode: Mode, watch: &mut dyn FnMut(Stage)) -> PartReport {
-    let stamp = Stamp { time: super::clock::time_stamp(), preprocessor: program() };
+    let stamp = Stamp { time: crate::job::clock::time_stamp(), preprocessor: program() };
     let start = Instant::now();
     let name = |path: &Path| path.to_string_lossy().into_owned();
     let mut report = PartReport::new(name(&part.input), name(&part.output));
@@ -284,7 +284,7 @@ fn tell_restated(document: &Document, report: &mut PartReport) {
 
 /// Counts of surfaces by kind, as a change set will leave them.
 fn count_kinds(surfaces: &mut BTreeMap<String, usize>, model: &Model, changes: &ChangeSet) {
-    let own = |face: &FaceId| super::measure::kind(model.brep.surface_of(*face));
+    let own = |face: &FaceId| crate::job::report::measure::kind(model.brep.surface_of(*face));
     let kind = |face: &NewFace| match &face.surface {
         NewSurface::Own(surface) => surface.kind().to_owned(),
         NewSurface::Of(old) => {

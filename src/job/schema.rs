@@ -1,10 +1,10 @@
 //! JSON Schema of the job file, of the report, of features, details and proof sheets, generated from their types.
 
-use super::detail_library::DetailFile;
-use super::feature_file::FeatureFile;
-use super::file::Job;
-use super::proof::ProofSheet;
-use super::report::Report;
+use crate::job::file::Job;
+use crate::job::library::detail::DetailFile;
+use crate::job::library::feature::FeatureFile;
+use crate::job::report::Report;
+use crate::job::side::proof::ProofSheet;
 
 /// The schema of the job file, with a line feed behind it.
 #[must_use]

@@ -1,17 +1,17 @@
 //! What a file states of the volume, area and centroid of its parts, and whether it is so.
 //!
-//! What is to be stated once the shape has changed is [`restate`](super::restate)'s concern.
+//! What is to be stated once the shape has changed is [`restate`](crate::job::restate)'s concern.
 //!
 //! Only statements about bodies, products and uses of products that the file holds in full. What other programs measured
 //! with is not known: a difference counts when no rounding or gap explains it.
 
 use std::collections::BTreeMap;
 
-use super::finding::OwnFinding;
 use crate::brep::BodyId;
 use crate::brep::mass_properties::Quadrature;
 use crate::diagnostic::Severity;
 use crate::document::Document;
+use crate::job::report::finding::OwnFinding;
 use crate::math::Point3;
 use crate::model::{Annotation, AnnotationKind, Element, Mass, Measure, Model, Origin, Subject};
 

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use super::escaped;
-use crate::job::illustrate::Illustration;
-use crate::job::measure::Figures;
+use crate::job::report::measure::Figures;
 use crate::job::report::{DiagnosticReport, PartReport, Report, Status, WritePath};
+use crate::job::side::illustrate::Illustration;
 use crate::validate::Verdict;
 
 const STYLE: &str = include_str!("page.css");

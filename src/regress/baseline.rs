@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use serde::Deserialize;
 
-use crate::job::measured::{Measure, Measures};
+use crate::job::report::measured::{Measure, Measures};
 
 /// What was measured once, and how near later measures must be.
 #[derive(Debug, Clone, PartialEq, Deserialize)]

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::baseline::{Baseline, Tolerances, Version};
 use super::survey::Surveyed;
-use crate::job::measured::{Measure, Measures};
+use crate::job::report::measured::{Measure, Measures};
 
 /// One part against the baseline.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -8,8 +8,8 @@ use std::time::Instant;
 use crate::batch::{Interrupt, JobText, Limits, measure};
 use crate::document::Format;
 use crate::job::file::ValidatorName;
-use crate::job::measured::{Measure, Measures};
 use crate::job::plan::{self, Part, normal};
+use crate::job::report::measured::{Measure, Measures};
 
 /// What a part measures now.
 #[derive(Debug, Clone, PartialEq)]
