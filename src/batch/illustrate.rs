@@ -33,6 +33,8 @@ pub struct Illustrated {
 #[derive(Debug, Serialize, Deserialize)]
 struct Kept {
     key: String,
+    /// Digest of the page: its place is a number among the parts of a run, and may be another part's by now.
+    page: String,
     illustration: Illustration,
 }
 
@@ -71,7 +73,7 @@ fn drawn(part: &Part, page: &Path, limits: &Limits, interrupt: &Interrupt) -> Re
     let place = record::beside(&part.output, "pictures.json");
     let kept = place.as_ref().and_then(|place| std::fs::read_to_string(place).ok());
     let kept = kept.and_then(|text| serde_json::from_str::<Kept>(&text).ok());
-    if let Some(kept) = kept.filter(|kept| kept.key == key && page.is_file()) {
+    if let Some(kept) = kept.filter(|kept| kept.key == key && is_of(page, &kept.page)) {
         return Ok(kept.illustration);
     }
     let task = Task::Illustrate { part: part.clone(), page: page.to_owned() };
@@ -81,12 +83,17 @@ fn drawn(part: &Part, page: &Path, limits: &Limits, interrupt: &Interrupt) -> Re
         Ok(_) => return Err("the worker gave another answer".to_owned()),
         Err(error) => return Err(error.to_string()),
     };
-    let kept = Kept { key, illustration };
+    let digest = digest::of_file(page).map_err(|error| error.to_string())?;
+    let kept = Kept { key, page: digest, illustration };
     // Pictures that cannot be kept are drawn again.
     if let (Some(place), Ok(text)) = (place, serde_json::to_string(&kept)) {
         let _ = Staged::write(&place, text.as_bytes()).and_then(Staged::commit);
     }
     Ok(kept.illustration)
+}
+
+fn is_of(page: &Path, digest: &str) -> bool {
+    digest::of_file(page).is_ok_and(|found| found == digest)
 }
 
 /// Both files and the program.

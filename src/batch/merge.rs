@@ -21,6 +21,14 @@ pub enum MergeError {
         "the reports are of different runs: the job, the names or the sizes of its parts are not the same"
     )]
     OtherRun,
+    /// A share that cannot be.
+    #[error("share {index} of {count} cannot be")]
+    Impossible {
+        /// The share, from 1.
+        index: usize,
+        /// How many there are.
+        count: usize,
+    },
     /// A share was done twice.
     #[error("share {index} stands in two reports")]
     Twice {
@@ -41,6 +49,9 @@ fn list(numbers: &[usize]) -> String {
     numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }
 
+/// Missing shares that are named at most.
+const NAMED: usize = 20;
+
 /// Puts the reports of all shares together.
 ///
 /// # Errors
@@ -55,11 +66,15 @@ pub fn merged(reports: Vec<Report>) -> Result<Report, MergeError> {
         if own.count != shard.count || report.plan != plan {
             return Err(MergeError::OtherRun);
         }
+        if own.index == 0 || own.index > own.count {
+            return Err(MergeError::Impossible { index: own.index, count: own.count });
+        }
         if !known.insert(own.index) {
             return Err(MergeError::Twice { index: own.index });
         }
     }
-    let missing: Vec<usize> = (1..=shard.count).filter(|index| !known.contains(index)).collect();
+    let missing = (1..=shard.count).filter(|index| !known.contains(index));
+    let missing: Vec<usize> = missing.take(NAMED).collect();
     if !missing.is_empty() {
         return Err(MergeError::Missing { missing, count: shard.count });
     }

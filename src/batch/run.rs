@@ -104,7 +104,7 @@ pub fn run(
         version: 1,
         program: program(),
         job: run.job.job()?.name,
-        code: Report::overall(&parts),
+        code: if run.shard.is_some() { Report::of_several(&parts) } else { Report::overall(&parts) },
         shard: run.shard,
         plan,
         seconds: begin.elapsed().as_secs_f64(),

@@ -10,6 +10,7 @@ use crate::diagnostic::Severity;
 use crate::job::file::ValidateSettings;
 use crate::job::judge::first_missing;
 use crate::job::output::Staged;
+use crate::job::report::measured::Measure;
 use crate::publish::junit::{Blame, Case, suite};
 use crate::regress::compare::updated;
 use crate::regress::{Baseline, Comparison, Outcome, Surveyed, compare, survey};
@@ -31,6 +32,12 @@ fn done(arguments: &RegressArguments, printer: &mut Printer) -> Result<u8, u8> {
     let surveyed = measured(arguments, printer)?;
     let compared = compare(&known, &surveyed);
     let differing = compared.iter().filter(|part| part.outcome != Outcome::Same).count();
+    let passing = surveyed.iter().find(|part| is_passing(part));
+    if let Some(part) = passing.filter(|_| arguments.update) {
+        let text = format!("{}: a limit or a disk was in the way; the baseline is as it was", part.name);
+        printer.message(Severity::Error, &text);
+        return Err(exit_code::RESOURCE);
+    }
     if arguments.update {
         write(&arguments.baseline, &updated(&known, &surveyed).text(), printer)?;
     }
@@ -48,7 +55,17 @@ fn done(arguments: &RegressArguments, printer: &mut Printer) -> Result<u8, u8> {
     }
     let kept = if arguments.update { "; the baseline is what was measured now" } else { "" };
     printer.line(&format!("{} parts: {differing} differ from the baseline{kept}", compared.len()));
-    Ok(if differing == 0 || arguments.update { exit_code::DONE } else { exit_code::GATE })
+    Ok(match (differing, passing) {
+        (0, _) => exit_code::DONE,
+        _ if arguments.update => exit_code::DONE,
+        (_, Some(_)) => exit_code::RESOURCE,
+        _ => exit_code::GATE,
+    })
+}
+
+/// Whether a part ended by something that says nothing of it: trying again, or a higher limit, may give its measures.
+fn is_passing(part: &Surveyed) -> bool {
+    matches!(part.measures.get("outcome"), Some(Measure::Word(code)) if code.starts_with("resource.") || code.starts_with("io."))
 }
 
 fn measured(arguments: &RegressArguments, printer: &mut Printer) -> Result<Vec<Surveyed>, u8> {

@@ -1,6 +1,7 @@
 //! `resurf run`: a job over its parts.
 
-use std::path::Path;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 
 use super::arguments::RunArguments;
 use super::exit_code;
@@ -11,6 +12,7 @@ use crate::batch::run::Memory;
 use crate::batch::task::JobError;
 use crate::batch::{self, Interrupt, JobText, Run};
 use crate::diagnostic::Severity;
+use crate::job::Job;
 use crate::job::judge::first_missing;
 use crate::job::plan::{self, Part};
 use crate::job::report::{PartReport, Report, WritePath};
@@ -44,6 +46,9 @@ fn done(arguments: &RunArguments, printer: &mut Printer) -> Result<(Report, Inte
     {
         return Err(refuse(&error.to_string(), exit_code::VALIDATOR_MISSING));
     }
+    if let Some(message) = clash(arguments, &job, &text, &parts) {
+        return Err(refuse(&message, exit_code::USAGE));
+    }
     let interrupt = Interrupt::listen().map_err(|error| refuse(&error.to_string(), exit_code::IO))?;
     let mode = if arguments.dry_run { Mode::DryRun } else { Mode::Write };
     let run = Run {
@@ -60,6 +65,17 @@ fn done(arguments: &RunArguments, printer: &mut Printer) -> Result<(Report, Inte
     display.end();
     let report = report.map_err(|error| show_job_error(printer, &arguments.job, &text, &error))?;
     Ok((report, interrupt))
+}
+
+/// A report that would be written over a file of the run, or over another report.
+fn clash(arguments: &RunArguments, job: &Job, text: &JobText, parts: &[Part]) -> Option<String> {
+    let files = parts.iter().flat_map(|part| [part.input.clone(), part.output.clone()]);
+    let read = plan::referenced(job).into_iter().map(|file| text.folder.join(file));
+    let mut taken: BTreeSet<PathBuf> = files.chain(read).map(|path| plan::normal(&path)).collect();
+    taken.insert(plan::normal(&arguments.job));
+    let reports = [&arguments.report, &arguments.junit, &arguments.html];
+    let over = reports.into_iter().flatten().find(|path| !taken.insert(plan::normal(path)))?;
+    Some(format!("the report {} would be written over another file of the run", over.display()))
 }
 
 /// The job's text and its parts, or the exit code after a message.

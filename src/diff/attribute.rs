@@ -1,10 +1,11 @@
-//! Names, colours and layers of faces that stand for each other.
+//! Names, colours, layers and outer sides of faces that stand for each other.
 
 use std::collections::BTreeMap;
 
-use super::Pair;
 use super::placed::{PlacedFace, Side};
 use super::structure::StructureChange;
+use super::{Kin, Pair};
+use crate::math::{Point3, Vector3};
 use crate::model::Colour;
 
 /// How a word of a face is read off.
@@ -30,6 +31,11 @@ pub(super) fn differences(before: &Side<'_>, after: &Side<'_>, pairs: &[Pair]) -
                 found.entry((what, was, is)).or_insert((0, first)).0 += 1;
             }
         }
+        if pair.kin != Kin::Differing && are_turned(before, a, after, b) {
+            let first = after.model.origins.faces[b.face].to_string();
+            let (was, is) = ("one side".to_owned(), "the other".to_owned());
+            found.entry(("outer side", was, is)).or_insert((0, first)).0 += 1;
+        }
     }
     let change = |((what, was, is), (count, first)): ((&'static str, String, String), (usize, String))| {
         let faces =
@@ -37,6 +43,26 @@ pub(super) fn differences(before: &Side<'_>, after: &Side<'_>, pairs: &[Pair]) -
         StructureChange { what, message: format!("{faces}: `{was}` before, `{is}` after") }
     };
     found.into_iter().map(change).collect()
+}
+
+/// Whether two faces of one shape have their material on different sides.
+fn are_turned(before: &Side<'_>, a: &PlacedFace, after: &Side<'_>, b: &PlacedFace) -> bool {
+    let Some(point) = before.mesh(a).and_then(|mesh| mesh.corners().next()) else { return false };
+    let corners = point.map(|corner| a.transform.point(&corner).coords);
+    let point = Point3::from((corners[0] + corners[1] + corners[2]) / 3.0);
+    let normals = outward(before, a, &point).zip(outward(after, b, &point));
+    normals.is_some_and(|(a, b)| a.dot(&b) < 0.0)
+}
+
+/// Normal out of the material at the foot of a point; `None` where the surface has none.
+fn outward(side: &Side<'_>, face: &PlacedFace, point: &Point3<f64>) -> Option<Vector3<f64>> {
+    let brep = &side.model.brep;
+    let surface = brep.surface_of(face.face).read()?;
+    let (u, v) = surface.parameters_of(&face.transform.inverse()?.point(point), None);
+    let normal = face.transform.vector(&surface.normal(u, v)?);
+    let topology = &brep.faces[face.face];
+    let out = topology.same_sense == brep.shells[topology.shell].forward;
+    Some(if out { normal } else { -normal })
 }
 
 fn name(side: &Side<'_>, face: &PlacedFace) -> String {

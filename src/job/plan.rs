@@ -44,6 +44,14 @@ pub enum PlanError {
         /// The input.
         pattern: String,
     },
+    /// A folder that an input asks for cannot be searched.
+    #[error("{} cannot be searched: {reason}", .folder.display())]
+    Unseen {
+        /// The folder.
+        folder: PathBuf,
+        /// Why.
+        reason: String,
+    },
     /// `output` names something in braces that is not known.
     #[error("output `{template}` has `{{{name}}}`; known are `{{dir}}`, `{{stem}}` and `{{ext}}`")]
     BadTemplate {
@@ -162,9 +170,10 @@ pub fn parts(job: &Job, folder: &Path) -> Result<Vec<Part>, PlanError> {
         }
         parts.push(Part { input, output });
     }
-    let over = |part: &&Part| outputs.contains_key(&normal(&part.input));
-    match parts.iter().find(over) {
-        Some(part) => Err(PlanError::OverInput { output: part.input.clone() }),
+    let others = referenced(job).into_iter().map(|file| folder.join(file));
+    let mut read = parts.iter().map(|part| part.input.clone()).chain(others);
+    match read.find(|file| outputs.contains_key(&normal(file))) {
+        Some(output) => Err(PlanError::OverInput { output }),
         None => Ok(parts),
     }
 }
@@ -206,7 +215,7 @@ fn matches(pattern: &str, folder: &Path) -> Result<Vec<PathBuf>, PlanError> {
     let rest = &pattern[fixed.len()..];
     let glob = GlobBuilder::new(rest).literal_separator(true).build().map_err(bad)?.compile_matcher();
     let depth = if rest.contains("**") { DEPTH } else { rest.matches('/').count() + 1 };
-    let found = walk(&root, depth, &glob);
+    let found = walk(&root, depth, &glob)?;
     if found.is_empty() {
         let name = plain.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
         return Err(PlanError::NoMatch { pattern: pattern.to_owned(), nearest: nearest_file(&plain, &name) });
@@ -217,14 +226,33 @@ fn matches(pattern: &str, folder: &Path) -> Result<Vec<PathBuf>, PlanError> {
 /// Folders below a `**` that are searched: a link that leads to its own parent must end somewhere.
 const DEPTH: usize = 64;
 
-fn walk(root: &Path, depth: usize, glob: &GlobMatcher) -> Vec<PathBuf> {
+/// A link to nothing counts as a part, so that it fails by its name; a folder that cannot be searched ends the search.
+fn walk(root: &Path, depth: usize, glob: &GlobMatcher) -> Result<Vec<PathBuf>, PlanError> {
     let here = Path::new(".");
     let root = if root.as_os_str().is_empty() { here } else { root };
     let entries = walkdir::WalkDir::new(root).max_depth(depth).follow_links(true).into_iter();
-    let files = entries.filter_map(Result::ok).filter(|entry| entry.file_type().is_file());
     let below = |path: &Path| path.strip_prefix(root).is_ok_and(|rest| glob.is_match(rest));
-    let found = files.map(walkdir::DirEntry::into_path).filter(|path| below(path));
-    found.map(|path| path.strip_prefix(here).map(Path::to_path_buf).unwrap_or(path)).collect()
+    let mut found = Vec::new();
+    for entry in entries {
+        let path = match entry {
+            Ok(entry) if entry.file_type().is_file() => entry.into_path(),
+            Ok(_) => continue,
+            Err(error) => match unseen(&error) {
+                Some(refused) => return Err(refused),
+                None => error.path().map(Path::to_path_buf).unwrap_or_default(),
+            },
+        };
+        if below(&path) {
+            found.push(path.strip_prefix(here).map(Path::to_path_buf).unwrap_or(path));
+        }
+    }
+    Ok(found)
+}
+
+/// A folder whose parts would be passed over in silence.
+fn unseen(error: &walkdir::Error) -> Option<PlanError> {
+    let reason = error.io_error().filter(|error| error.kind() == std::io::ErrorKind::PermissionDenied)?;
+    Some(PlanError::Unseen { folder: error.path()?.to_owned(), reason: reason.to_string() })
 }
 
 fn nearest_file(path: &Path, name: &str) -> Option<String> {

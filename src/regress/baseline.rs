@@ -80,10 +80,25 @@ impl Baseline {
     /// # Errors
     /// [`BaselineError`] with the place.
     pub fn read(text: &str) -> Result<Self, BaselineError> {
-        toml::from_str(text).map_err(|error| BaselineError {
+        let baseline: Self = toml::from_str(text).map_err(|error| BaselineError {
             message: error.message().to_owned(),
             span: error.span().unwrap_or(0..0),
-        })
+        })?;
+        let Tolerances { volume, area, centroid, extents, seconds } = baseline.tolerance;
+        let named = [
+            ("volume", volume),
+            ("area", area),
+            ("centroid", centroid),
+            ("extents", extents),
+            ("seconds", seconds),
+        ];
+        match named.into_iter().find(|(_, value)| !(value.is_finite() && *value >= 0.0)) {
+            Some((name, value)) => Err(BaselineError {
+                message: format!("the tolerance `{name}` is {value}; it must be a finite number from 0"),
+                span: text.find(&format!("{name} ")).map_or(0..0, |at| at..at + name.len()),
+            }),
+            None => Ok(baseline),
+        }
     }
 
     /// Its text: parts and measures in order, a line each, numbers as short as they read back.
@@ -155,5 +170,9 @@ mod tests {
         let error = Baseline::read("version = 2\n").expect_err("unknown");
         assert!(error.message.contains("version 2") && error.span.start == 10, "{error:?}");
         assert!(Baseline::read("version = 1\n[tolerance]\nvolum = 1\n").is_err());
+        for value in ["inf", "-1.0", "nan"] {
+            let error = Baseline::read(&format!("version = 1\n[tolerance]\nvolume = {value}\n")).unwrap_err();
+            assert!(error.message.contains("`volume`"), "{}", error.message);
+        }
     }
 }

@@ -106,10 +106,20 @@ fn items(folder: &Path) -> std::io::Result<Vec<Item>> {
     std::fs::read_dir(folder)?;
     let hidden =
         |entry: &walkdir::DirEntry| entry.depth() > 0 && entry.file_name().to_string_lossy().starts_with('.');
-    let walk = walkdir::WalkDir::new(folder).max_depth(DEPTH).sort_by_file_name();
-    let files = walk.into_iter().filter_entry(|entry| !hidden(entry)).filter_map(Result::ok);
-    let files: Vec<PathBuf> =
-        files.filter(|entry| entry.file_type().is_file()).map(walkdir::DirEntry::into_path).collect();
+    let walk = walkdir::WalkDir::new(folder).max_depth(DEPTH).follow_links(true).sort_by_file_name();
+    let mut files = Vec::new();
+    for entry in walk.into_iter().filter_entry(|entry| !hidden(entry)) {
+        match entry {
+            Ok(entry) if entry.file_type().is_file() => files.push(entry.into_path()),
+            Ok(_) => {}
+            // A link to nothing fails by its name when it is measured; what cannot be searched must not seem to be gone.
+            Err(error) if error.io_error().is_some_and(|e| e.kind() == std::io::ErrorKind::NotFound) => {
+                files.extend(error.path().map(Path::to_path_buf));
+            }
+            Err(error) if error.loop_ancestor().is_some() => {}
+            Err(error) => return Err(error.into()),
+        }
+    }
     let (mut items, mut outputs) = (Vec::new(), BTreeSet::new());
     for path in files.iter().filter(|path| is(path, &["toml", "json"])) {
         if let Some(found) = job(folder, path, &mut outputs) {
@@ -142,7 +152,12 @@ fn item(name: String, input: PathBuf, job: Option<Result<JobText, String>>) -> I
 
 /// The parts of a job; `None` for a file that is no job at all.
 fn job(folder: &Path, path: &Path, outputs: &mut BTreeSet<PathBuf>) -> Option<Vec<Item>> {
-    let text = JobText::file(path).ok()?;
+    let text = match JobText::file(path) {
+        Ok(text) => text,
+        Err(error) => {
+            return Some(vec![item(name(folder, path), path.to_owned(), Some(Err(error.to_string())))]);
+        }
+    };
     if !["inputs", "output"].iter().all(|key| text.text.contains(key)) {
         return None;
     }

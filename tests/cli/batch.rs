@@ -329,3 +329,46 @@ fn every_part_of_the_corpus_comes_through_or_is_a_named_failure() {
     };
     assert!(written("1") == written("2") && written("1").len() > files.len() / 2);
 }
+
+#[test]
+fn a_report_over_a_file_of_the_run_is_refused() {
+    let job = "version = 1\ninputs = [\"a.step\"]\noutput = \"out/a.step\"\n";
+    let door = include_str!("../../samples/door/door.step");
+    let fixture = Fixture::new().file("a.step", door).file("job.toml", job);
+    for words in [["--report", "a.step"], ["--junit", "job.toml"], ["--html", "out/a.step"]] {
+        let said = fixture.run(&["run", "job.toml", words[0], words[1]]);
+        assert!(said.starts_with("exit code: 2\n") && said.contains("another file of the run"), "{said}");
+    }
+    let said = fixture.run(&["run", "job.toml", "--report", "r", "--junit", "r"]);
+    assert!(said.starts_with("exit code: 2\n"), "{said}");
+    assert_eq!(std::fs::read_to_string(fixture.path("a.step")).expect("the part"), door);
+    assert!(!fixture.path("out").exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_to_nothing_is_a_part_that_fails_by_its_name() {
+    let job = "version = 1\ninputs = [\"*.step\"]\noutput = \"out/{stem}.step\"\n";
+    let door = include_str!("../../samples/door/door.step");
+    let fixture = Fixture::new().file("a.step", door).file("job.toml", job);
+    std::os::unix::fs::symlink("nowhere.step", fixture.path("b.step")).expect("a link");
+    let said = fixture.run(&["run", "job.toml"]);
+    assert!(!said.starts_with("exit code: 0\n") && said.contains("b.step"), "{said}");
+    assert!(fixture.path("out/a.step").exists());
+}
+
+#[test]
+fn shares_that_cannot_be_are_not_merged() {
+    let job = "version = 1\ninputs = [\"a.step\"]\noutput = \"out/a.step\"\n";
+    let door = include_str!("../../samples/door/door.step");
+    let fixture = Fixture::new().file("a.step", door).file("job.toml", job);
+    fixture.run(&["run", "job.toml", "--shard", "1/1", "--report", "1.json"]);
+    let report = std::fs::read_to_string(fixture.path("1.json")).expect("a report");
+    for (index, count) in [("0", "1"), ("9", "1"), ("1", "1000000000000")] {
+        let other = report.replace("\"index\": 1", &format!("\"index\": {index}"));
+        let other = other.replace("\"count\": 1", &format!("\"count\": {count}"));
+        std::fs::write(fixture.path("2.json"), other).expect("a file");
+        let said = fixture.run(&["report", "merge", "2.json"]);
+        assert!(said.starts_with("exit code: 2\n"), "{index} of {count}: {said}");
+    }
+}

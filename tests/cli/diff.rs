@@ -314,3 +314,20 @@ fn what_open_cascade_writes_again_has_the_same_geometry() {
         assert!(difference["faces"]["same"].as_u64() > Some(0), "{name}: nothing was written in another way");
     }
 }
+
+#[test]
+fn faces_turned_inside_out_are_no_equal_part() {
+    let before = sample("door-solid/door-solid.step");
+    let turned: String = before
+        .split_inclusive('\n')
+        .map(|line| {
+            if line.contains("=ADVANCED_FACE(") { line.replace(",.T.);", ",.F.);") } else { line.to_owned() }
+        })
+        .collect();
+    assert_ne!(before, turned);
+    let fixture = Fixture::new().file("a.step", before).file("b.step", turned);
+    let (difference, code) = diff(&fixture, &["a.step", "b.step"]);
+    assert_eq!((code, &difference["equal"]), (1, &Value::Bool(false)), "{difference:#}");
+    let told = difference["structure"].as_array().expect("a list");
+    assert!(told.iter().any(|change| change["what"] == "outer side"), "{difference:#}");
+}

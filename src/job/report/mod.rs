@@ -53,14 +53,17 @@ pub struct Shard {
 }
 
 impl Report {
-    /// Exit code of a run. One part's own code is the run's. Of several, a failed one makes it tell a scheduler
-    /// what would help: [`INTERRUPTED`](code::INTERRUPTED) when parts were not done, [`IO`](code::IO) when trying again may help
-    /// some part, [`RESOURCE`](code::RESOURCE) when more memory or time may, and else [`GATE`](code::GATE).
+    /// Exit code of a run: one part's own code, or that [of several](Self::of_several).
     #[must_use]
     pub fn overall(parts: &[PartReport]) -> u8 {
-        if let [only] = parts {
-            return only.code;
-        }
+        if let [only] = parts { only.code } else { Self::of_several(parts) }
+    }
+
+    /// Exit code of a run of several parts, or of a share of one. A failed part makes it tell a scheduler what would
+    /// help: [`INTERRUPTED`](code::INTERRUPTED) when parts were not done, [`IO`](code::IO) when trying again may help some
+    /// part, [`RESOURCE`](code::RESOURCE) when more memory or time may, and else [`GATE`](code::GATE).
+    #[must_use]
+    pub fn of_several(parts: &[PartReport]) -> u8 {
         let helped = [code::INTERRUPTED, code::IO, code::RESOURCE];
         let found = |wanted: &u8| parts.iter().any(|part| part.code == *wanted);
         match helped.into_iter().find(found) {

@@ -172,6 +172,15 @@ const SMOOTH: f64 = 8.7e-4;
 /// Places between two sections at which a blend is measured.
 const BETWEEN: usize = 4;
 
+/// Deviation, as a part of the radius, that more sections would not mend.
+const JUMP: f64 = 0.01;
+
+/// The section that is farthest from the one before it.
+fn widest(sections: &[Section]) -> usize {
+    let step = |k: &usize| (sections[*k].centre - sections[k - 1].centre).norm();
+    (1..sections.len()).max_by(|a, b| step(a).total_cmp(&step(b))).unwrap_or(0)
+}
+
 /// Rolls a ball along an edge, with so many sections that the blend's borders lie within a tolerance of both surfaces.
 ///
 /// # Errors
@@ -188,6 +197,14 @@ pub fn rolled(edge: Edge<'_>, law: &RadiusLaw, tolerance: f64) -> Result<Rolled,
         let off = found.deviation[0].max(found.deviation[1]);
         if off <= tolerance && found.angle <= SMOOTH {
             return Ok(found);
+        }
+        if count >= SECTIONS.1 && off > JUMP * law.mean() {
+            let reason = "its place of rest jumps along the line";
+            return Err(ReconstructionError::BallDoesNotFit {
+                radius: law.mean(),
+                near: near(widest(&sections)),
+                reason,
+            });
         }
         if count >= SECTIONS.1 {
             let angle = found.angle.to_degrees();
