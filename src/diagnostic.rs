@@ -95,3 +95,59 @@ impl Sink for Diagnostics {
         }
     }
 }
+
+/// Declares the enum of a format's codes, and the only constructors of its diagnostics: each code with its stable text and
+/// the severity that follows from it.
+macro_rules! codes {
+    ($(#[$what:meta])* enum $codes:ident; $($(#[$doc:meta])* $name:ident, $text:literal, $severity:ident;)*) => {
+        $(#[$what])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum $codes { $($(#[$doc])* $name,)* }
+
+        impl $codes {
+            /// Every code, in the order of the declaration.
+            pub const ALL: &'static [Self] = &[$(Self::$name,)*];
+
+            /// The stable text of the code.
+            #[must_use]
+            pub fn text(self) -> &'static str {
+                match self { $(Self::$name => $text,)* }
+            }
+
+            /// How much the fact matters.
+            #[must_use]
+            pub fn severity(self) -> $crate::diagnostic::Severity {
+                match self { $(Self::$name => $crate::diagnostic::Severity::$severity,)* }
+            }
+
+            /// A diagnostic of this code at a place.
+            #[must_use]
+            pub fn note(
+                self,
+                span: $crate::source::Span,
+                message: impl Into<String>,
+            ) -> $crate::diagnostic::Diagnostic {
+                $crate::diagnostic::Diagnostic {
+                    code: self.text(),
+                    severity: self.severity(),
+                    entity: None,
+                    span: Some(span),
+                    message: message.into(),
+                }
+            }
+
+            /// A diagnostic of this code about one entity.
+            #[must_use]
+            pub fn note_on(
+                self,
+                entity: impl std::fmt::Display,
+                span: $crate::source::Span,
+                message: impl Into<String>,
+            ) -> $crate::diagnostic::Diagnostic {
+                $crate::diagnostic::Diagnostic { entity: Some(entity.to_string()), ..self.note(span, message) }
+            }
+        }
+    };
+}
+
+pub(crate) use codes;

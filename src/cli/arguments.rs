@@ -205,6 +205,8 @@ pub enum Target {
     Iges,
     /// Binary STL
     Stl,
+    /// STL as text, with coordinates that read back to the same bits
+    StlText,
     /// OFF
     Off,
     /// 3MF with names and colours

@@ -64,7 +64,7 @@ fn places(arguments: &ConvertArguments) -> Result<Vec<(PathBuf, Target)>, String
                 Target::Step | Target::Iges if own_format(&name) == target => name,
                 Target::Step => name.with_extension("step"),
                 Target::Iges => name.with_extension("igs"),
-                Target::Stl => name.with_extension("stl"),
+                Target::Stl | Target::StlText => name.with_extension("stl"),
                 Target::Off => name.with_extension("off"),
                 Target::ThreeMf => name.with_extension("3mf"),
                 Target::Glb => name.with_extension("glb"),
@@ -125,6 +125,7 @@ fn one(
     match target {
         Target::Step | Target::Iges => part(input, output, target, arguments, printer),
         Target::Stl => mesh(input, output, SideFormat::Stl, tolerance, printer),
+        Target::StlText => mesh(input, output, SideFormat::StlText, tolerance, printer),
         Target::Off => mesh(input, output, SideFormat::Off, tolerance, printer),
         Target::ThreeMf => mesh(input, output, SideFormat::ThreeMf, tolerance, printer),
         Target::Glb => mesh(input, output, SideFormat::Glb, tolerance, printer),

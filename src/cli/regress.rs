@@ -32,11 +32,11 @@ fn done(arguments: &RegressArguments, printer: &mut Printer) -> Result<u8, u8> {
     let surveyed = measured(arguments, printer)?;
     let compared = compare(&known, &surveyed);
     let differing = compared.iter().filter(|part| part.outcome != Outcome::Same).count();
-    let passing = surveyed.iter().find(|part| is_passing(part));
-    if let Some(part) = passing.filter(|_| arguments.update) {
+    let passing = surveyed.iter().find_map(|part| Some((part, passing(part)?)));
+    if let Some((part, code)) = passing.filter(|_| arguments.update) {
         let text = format!("{}: a limit or a disk was in the way; the baseline is as it was", part.name);
         printer.message(Severity::Error, &text);
-        return Err(exit_code::RESOURCE);
+        return Err(code);
     }
     if arguments.update {
         write(&arguments.baseline, &updated(&known, &surveyed).text(), printer)?;
@@ -58,14 +58,19 @@ fn done(arguments: &RegressArguments, printer: &mut Printer) -> Result<u8, u8> {
     Ok(match (differing, passing) {
         (0, _) => exit_code::DONE,
         _ if arguments.update => exit_code::DONE,
-        (_, Some(_)) => exit_code::RESOURCE,
+        (_, Some((_, code))) => code,
         _ => exit_code::GATE,
     })
 }
 
-/// Whether a part ended by something that says nothing of it: trying again, or a higher limit, may give its measures.
-fn is_passing(part: &Surveyed) -> bool {
-    matches!(part.measures.get("outcome"), Some(Measure::Word(code)) if code.starts_with("resource.") || code.starts_with("io."))
+/// The exit code of a part that ended by something that says nothing of it: trying again, or a higher limit, may give its
+/// measures.
+fn passing(part: &Surveyed) -> Option<u8> {
+    match part.measures.get("outcome") {
+        Some(Measure::Word(code)) if code.starts_with("resource.") => Some(exit_code::RESOURCE),
+        Some(Measure::Word(code)) if code.starts_with("io.") => Some(exit_code::IO),
+        _ => None,
+    }
 }
 
 fn measured(arguments: &RegressArguments, printer: &mut Printer) -> Result<Vec<Surveyed>, u8> {

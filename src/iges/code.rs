@@ -4,35 +4,12 @@
 //! its name, its severity follows from the code alone, and [`Code::note`] is the only constructor of the
 //! diagnostics of this format. Texts never change once released.
 
-use crate::diagnostic::{Diagnostic, Severity};
-use crate::source::Span;
-
-macro_rules! codes {
-    ($($(#[$doc:meta])* $name:ident, $text:literal, $severity:ident;)*) => {
-        /// What is wrong with an IGES file.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-        pub enum Code { $($(#[$doc])* $name,)* }
-
-        impl Code {
-            /// Every code, in the order of the declaration.
-            pub const ALL: &'static [Self] = &[$(Self::$name,)*];
-
-            /// The stable text of the code.
-            #[must_use]
-            pub fn text(self) -> &'static str {
-                match self { $(Self::$name => $text,)* }
-            }
-
-            /// How much the fact matters.
-            #[must_use]
-            pub fn severity(self) -> Severity {
-                match self { $(Self::$name => Severity::$severity,)* }
-            }
-        }
-    };
-}
+use crate::diagnostic::codes;
 
 codes! {
+    /// What is wrong with an IGES file.
+    enum Code;
+
     /// No line of the file is a card of an IGES section.
     NotIges, "iges.not-iges", Error;
     /// The file is in the binary form, which IGES 5.3 still describes and nobody writes.
@@ -77,31 +54,6 @@ codes! {
     UnresolvedPointer, "iges.unresolved-pointer", Error;
     /// A line of the compressed form that cannot be read.
     BadCompression, "iges.bad-compression", Error;
-}
-
-impl Code {
-    /// A diagnostic of this code at a place.
-    #[must_use]
-    pub fn note(self, span: Span, message: impl Into<String>) -> Diagnostic {
-        Diagnostic {
-            code: self.text(),
-            severity: self.severity(),
-            entity: None,
-            span: Some(span),
-            message: message.into(),
-        }
-    }
-
-    /// A diagnostic of this code about one entity.
-    #[must_use]
-    pub fn note_on(
-        self,
-        entity: impl std::fmt::Display,
-        span: Span,
-        message: impl Into<String>,
-    ) -> Diagnostic {
-        Diagnostic { entity: Some(entity.to_string()), ..self.note(span, message) }
-    }
 }
 
 #[cfg(test)]

@@ -70,12 +70,6 @@ impl ExchangeStructure {
         self.index.breaks
     }
 
-    /// Lines of no section that are not blank.
-    #[must_use]
-    pub fn stray_lines(&self) -> &[Line] {
-        &self.index.stray
-    }
-
     /// What the global section says.
     #[must_use]
     pub fn global(&self) -> &Global {

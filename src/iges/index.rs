@@ -49,8 +49,6 @@ pub(super) struct Index {
     pub(super) form: Form,
     pub(super) breaks: Breaks,
     pub(super) sections: Sections,
-    /// Lines of no section that are not blank.
-    pub(super) stray: Vec<Line>,
     pub(super) global: Global,
     pub(super) entries: Vec<Entry>,
     pub(super) numbers: Numbers,
@@ -72,7 +70,6 @@ pub(super) fn build(bytes: &[u8], sink: &mut dyn Sink) -> Index {
             form: Form::Fixed,
             breaks,
             sections: Sections::default(),
-            stray: Vec::new(),
             global: Global::default(),
             entries: Vec::new(),
             numbers: Numbers::Regular,
@@ -132,7 +129,6 @@ impl<'a> Indexer<'a, '_> {
     #[inline]
     fn card(&mut self, kind: SectionKind, line: Line) {
         if self.at == SectionKind::Terminate {
-            self.index.stray.push(line);
             let span = Span::new(line.start, line.end);
             return self.note(Code::TrailingData, span, "a card behind the terminate card");
         }
@@ -152,7 +148,7 @@ impl<'a> Indexer<'a, '_> {
                     Span::new(line.start, line.end),
                     "the file is in the binary form",
                 );
-                return self.index.stray.push(line);
+                return;
             }
             self.index.form = Form::Compressed;
         }
@@ -178,7 +174,6 @@ impl<'a> Indexer<'a, '_> {
             self.at = SectionKind::Parameter;
             return self.index.sections.push(SectionKind::Parameter, line.start);
         }
-        self.index.stray.push(line);
         let span = Span::new(line.start, line.end);
         if self.at == SectionKind::Terminate {
             return self.note(Code::TrailingData, span, "text behind the terminate card");

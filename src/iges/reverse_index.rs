@@ -8,44 +8,28 @@ use super::exchange_structure::{ExchangeStructure, Instance};
 use super::view::EntityView;
 use super::{Code, Entity};
 use crate::diagnostic::Sink;
+use crate::exchange::Users;
 
 /// Users of each entity, by position.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ReverseIndex {
-    /// `users[starts[p]..starts[p + 1]]` use the entity at position `p`.
-    starts: Vec<u32>,
-    users: Vec<u32>,
-}
+pub struct ReverseIndex(Users);
 
 impl ReverseIndex {
     /// Builds the table. Linear in the file.
     #[must_use]
     pub fn build(structure: &ExchangeStructure) -> Self {
-        let mut pairs: Vec<(u32, u32)> = Vec::new();
+        let mut uses: Vec<(u32, u32)> = Vec::new();
         for instance in structure.instances() {
             let targets = pointers(instance).into_iter().filter_map(|number| structure.position(number));
-            pairs.extend(targets.map(|target| (target, instance.position())));
+            uses.extend(targets.map(|target| (target, instance.position())));
         }
-        pairs.sort_unstable();
-        pairs.dedup();
-        let mut starts = vec![0_u32; structure.len() as usize + 1];
-        for (target, _) in &pairs {
-            starts[*target as usize + 1] += 1;
-        }
-        for at in 1..starts.len() {
-            starts[at] += starts[at - 1];
-        }
-        Self { starts, users: pairs.into_iter().map(|(_, user)| user).collect() }
+        Self(Users::of(structure.len(), |found| uses.iter().for_each(|&(target, user)| found(target, user))))
     }
 
     /// Positions of the entities that point to the one at a position, ascending, each once.
     #[must_use]
     pub fn users_at(&self, position: u32) -> &[u32] {
-        let position = position as usize;
-        match (self.starts.get(position), self.starts.get(position + 1)) {
-            (Some(&start), Some(&end)) => &self.users[start as usize..end as usize],
-            _ => &[],
-        }
+        self.0.at(position)
     }
 
     /// Positions of the entities that point to an entity, ascending, each once.

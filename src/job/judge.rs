@@ -155,7 +155,7 @@ fn solid_mesh(model: &Model, chord: Option<f64>) -> Result<Option<Mesh>, PartErr
 pub fn side_bytes(model: &Model, chord: Option<f64>, format: SideFormat) -> Result<Vec<u8>, PartError> {
     let mut bytes = Vec::new();
     let written = match format {
-        SideFormat::Stl | SideFormat::Off => {
+        SideFormat::Stl | SideFormat::StlText | SideFormat::Off => {
             return Ok(mesh_bytes(&placed_mesh(model, chord, |_| true)?, format));
         }
         SideFormat::ThreeMf => three_mf::write(&scene(model, chord)?, &mut bytes),
@@ -280,6 +280,7 @@ fn mesh_bytes(mesh: &Mesh, format: SideFormat) -> Vec<u8> {
     let mut bytes = Vec::new();
     let written = match format {
         SideFormat::Stl => stl::write_binary(mesh, "resurf", &mut bytes),
+        SideFormat::StlText => stl::write_text(mesh, "resurf", &mut bytes),
         _ => off::write(mesh, &mut bytes),
     };
     written.expect("writing to memory cannot fail");

@@ -10,44 +10,30 @@ use memchr::memchr3;
 use super::exchange_structure::{ExchangeStructure, Instance, InstanceName};
 use super::{Code, syntax};
 use crate::diagnostic::Sink;
+use crate::exchange::Users;
 use crate::source::Span;
 
 /// Users of each instance, by position in the file.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ReverseIndex {
-    /// `users[starts[p]..starts[p + 1]]` use the instance at position `p`.
-    starts: Vec<u32>,
-    users: Vec<u32>,
-}
+pub struct ReverseIndex(Users);
 
 impl ReverseIndex {
     /// Builds the table. Linear in the file.
     #[must_use]
     pub fn build(structure: &ExchangeStructure) -> Self {
-        let count = structure.len() as usize;
-        let mut starts = vec![0_u32; count + 1];
-        for_each_use(structure, |target, _| starts[target as usize + 1] += 1);
-        for position in 0..count {
-            starts[position + 1] += starts[position];
-        }
-        let mut next = starts.clone();
-        let mut users = vec![0_u32; starts[count] as usize];
-        for_each_use(structure, |target, user| {
-            let slot = &mut next[target as usize];
-            users[*slot as usize] = user;
-            *slot += 1;
-        });
-        Self { starts, users }
+        Self(Users::of(structure.len(), |found| {
+            for instance in structure.instances() {
+                for target in references(instance).filter_map(|(name, _)| structure.position(name)) {
+                    found(target, instance.position());
+                }
+            }
+        }))
     }
 
     /// Positions of the instances that refer to the instance at `position`, ascending, each once.
     #[must_use]
     pub fn users_at(&self, position: u32) -> &[u32] {
-        let position = position as usize;
-        match (self.starts.get(position), self.starts.get(position + 1)) {
-            (Some(&start), Some(&end)) => &self.users[start as usize..end as usize],
-            _ => &[],
-        }
+        self.0.at(position)
     }
 
     /// Positions of the instances that refer to an instance, ascending, each once.
@@ -67,21 +53,6 @@ impl ReverseIndex {
 pub(super) fn anchored(structure: &ExchangeStructure) -> BTreeSet<u32> {
     let names = structure.anchors().flat_map(|(_, item)| References { bytes: item, at: 0 });
     names.filter_map(|(name, _)| structure.position(name?)).collect()
-}
-
-/// Calls `found(target, user)` once for every pair, in the order of the users.
-fn for_each_use(structure: &ExchangeStructure, mut found: impl FnMut(u32, u32)) {
-    const NEVER: u32 = u32::MAX;
-    let mut last_user = vec![NEVER; structure.len() as usize];
-    for instance in structure.instances() {
-        let user = instance.position();
-        for target in references(instance).filter_map(|(name, _)| structure.position(name)) {
-            if last_user[target as usize] != user {
-                last_user[target as usize] = user;
-                found(target, user);
-            }
-        }
-    }
 }
 
 /// Reports every reference to a name that neither a record nor the reference section defines.

@@ -372,3 +372,35 @@ fn shares_that_cannot_be_are_not_merged() {
         assert!(said.starts_with("exit code: 2\n"), "{index} of {count}: {said}");
     }
 }
+
+#[test]
+fn a_share_of_one_bad_part_is_a_share_with_a_failed_part() {
+    let job = "version = 1\ninputs = [\"*.step\"]\noutput = \"out/{stem}.step\"\n";
+    let fixture = Fixture::new().file("a.step", &DOOR[..DOOR.len() / 2]).file("job.toml", job);
+    let said = fixture.run(&["run", "job.toml", "--shard", "1/1"]);
+    assert!(said.starts_with("exit code: 1\n"), "{said}");
+    let said = fixture.run(&["run", "job.toml"]);
+    assert!(said.starts_with("exit code: 3\n"), "{said}");
+}
+
+#[test]
+fn the_page_of_a_part_is_its_own_when_its_place_among_the_parts_has_changed() {
+    let job = "version = 1\ninputs = [\"*/x.step\"]\noutput = \"{dir}/out/x.step\"\n";
+    let plate = include_str!("../../samples/plate/plate.step");
+    let fixture = Fixture::new()
+        .file("a/x.step", plate)
+        .file("b/x.step", DOOR)
+        .file("job.toml", job.replace("*/", "?/"));
+    let run = || {
+        let said = fixture.run(&["run", "job.toml", "--html", "r.html"]);
+        assert!(said.starts_with("exit code: 0\n"), "{said}");
+    };
+    run();
+    let page =
+        |number: &str| std::fs::read(fixture.path(&format!("r-parts/{number}-x.html"))).expect("a page");
+    let (plate_page, door_page) = (page("0001"), page("0002"));
+    assert_ne!(plate_page, door_page);
+    std::fs::remove_dir_all(fixture.path("a")).expect("a folder");
+    run();
+    assert_eq!(page("0001").len(), door_page.len());
+}

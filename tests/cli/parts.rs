@@ -203,6 +203,26 @@ fn meshes_stand_where_the_assembly_has_them() {
 }
 
 #[test]
+fn a_mesh_as_text_has_the_triangles_of_the_binary_one() {
+    let fixture = Fixture::new().sample("plate/plate.step");
+    for to in ["stl", "stl-text"] {
+        let said = fixture.run(&["convert", "plate.step", "-o", &format!("{to}.stl"), "--to", to]);
+        assert!(said.starts_with("exit code: 0\n"), "{said}");
+    }
+    let binary = std::fs::read(fixture.path("stl.stl")).expect("a mesh");
+    let text = std::fs::read_to_string(fixture.path("stl-text.stl")).expect("a mesh");
+    let vertices = text.lines().filter_map(|line| line.trim().strip_prefix("vertex "));
+    let numbers: Vec<f32> = vertices
+        .flat_map(str::split_whitespace)
+        .map(|word| word.parse::<f64>().expect("a number") as f32)
+        .collect();
+    // Behind the header: a normal, nine coordinates and two bytes each.
+    let stated = binary[84..].chunks(50).flat_map(|triangle| triangle[12..48].chunks(4));
+    let stated: Vec<f32> = stated.map(|b| f32::from_le_bytes(b.try_into().expect("four bytes"))).collect();
+    assert!(numbers.len() > 9 && numbers == stated);
+}
+
+#[test]
 fn a_page_of_half_a_part_says_so_by_its_exit_code() {
     let door = include_str!("../../samples/door/door.step");
     // The greatest multiplicity of one knot vector made impossible: the surface cannot be read.

@@ -144,3 +144,31 @@ fn the_night_of_the_samples_is_one_command() {
     }
     assert!(night().contains("nothing was done"));
 }
+
+#[test]
+fn what_a_limit_stopped_is_no_measure() {
+    let part = include_str!("../../samples/door-solid/door-solid.step");
+    let fixture = Fixture::new().file("parts/door.step", part);
+    let (_, said) = regress(&fixture, &["--update", "--timeout", "0.001"]);
+    assert!(said.starts_with("exit code: 6\n"), "{said}");
+    assert!(!fixture.path("base.toml").exists());
+    let (_, said) = regress(&fixture, &["--update"]);
+    assert!(said.starts_with("exit code: 0\n"), "{said}");
+    let (_, said) = regress(&fixture, &["--timeout", "0.001"]);
+    assert!(said.starts_with("exit code: 6\n"), "{said}");
+}
+
+#[cfg(unix)]
+#[test]
+fn links_are_parts_and_jobs_that_cannot_be_read_are_named() {
+    let door = include_str!("../../samples/door/door.step");
+    let fixture = Fixture::new().file("door.step", door).file("parts/job.toml", b"version = 1 # caf\xe9\n");
+    std::os::unix::fs::symlink("../door.step", fixture.path("parts/linked.step")).expect("a link");
+    std::os::unix::fs::symlink("../nowhere.step", fixture.path("parts/lost.step")).expect("a link");
+    let (_, said) = regress(&fixture, &["--update"]);
+    assert!(said.starts_with("exit code: 7\n") && said.contains("lost.step"), "{said}");
+    std::fs::remove_file(fixture.path("parts/lost.step")).expect("a link");
+    let (parts, said) = regress(&fixture, &["--update"]);
+    let names: Vec<&str> = parts.iter().filter_map(|part| part["part"].as_str()).collect();
+    assert_eq!(names, ["job.toml", "linked.step"], "{said}");
+}

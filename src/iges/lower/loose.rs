@@ -221,26 +221,6 @@ impl Lowering<'_> {
         Ok(())
     }
 
-    pub(super) fn remove_loose_bound(
-        &mut self,
-        ground: &Ground,
-        number: EntryNumber,
-    ) -> Result<(), LowerError> {
-        if self.replaced.contains(&number) {
-            return Ok(());
-        }
-        let view = self.view(ground.face)?;
-        let fields = view.fields();
-        let lists = [("inner", "inner_count"), ("boundaries", "count")];
-        for (list, count) in lists {
-            if let Some(slot) = slots(ground.face, fields, list).into_iter().find(|s| s.target == number) {
-                self.draft.unlist(&slot, 0, count);
-                return Ok(());
-            }
-        }
-        Err(LowerError::Unwritable { number: ground.face, kind: "face without an outer bound" })
-    }
-
     pub(super) fn remove_from_gatherer(
         &mut self,
         gatherer: EntryNumber,

@@ -226,21 +226,4 @@ impl Lowering<'_> {
         }
         Ok(())
     }
-
-    pub(super) fn remove_shell_bound(
-        &mut self,
-        ground: &Ground,
-        number: EntryNumber,
-    ) -> Result<(), LowerError> {
-        if self.replaced.contains(&number) {
-            return Ok(());
-        }
-        let view = self.view(ground.face)?;
-        for slot in slots(ground.face, view.fields(), "loops") {
-            if slot.target == number {
-                self.draft.unlist(&slot, 0, "count");
-            }
-        }
-        Ok(())
-    }
 }

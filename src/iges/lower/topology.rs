@@ -4,7 +4,7 @@ use super::super::EntryNumber;
 use super::curve::{between, in_space};
 use super::draft::Look;
 use super::record::Record;
-use super::slot::unreadable;
+use super::slot::{slots, unreadable};
 use super::{Ground, LowerError, Lowering, entry_of};
 use crate::brep::{BodyId, EdgeId, FaceId, LoopId};
 use crate::geometry::Curve2d;
@@ -65,11 +65,20 @@ impl Lowering<'_> {
         if number == ground.surface || number == ground.face {
             return Err(LowerError::NaturalBounds { number: ground.face, change: "taken away" });
         }
-        if ground.is_solid {
-            self.remove_shell_bound(&ground, number)
-        } else {
-            self.remove_loose_bound(&ground, number)
+        if self.replaced.contains(&number) {
+            return Ok(());
         }
+        let view = self.view(ground.face)?;
+        // A face of a solid lists loops; a loose one is a trimmed surface or a bounded one.
+        for (list, count) in [("loops", "count"), ("inner", "inner_count"), ("boundaries", "count")] {
+            let found =
+                slots(ground.face, view.fields(), list).into_iter().find(|slot| slot.target == number);
+            if let Some(slot) = found {
+                self.draft.unlist(&slot, 0, count);
+                return Ok(());
+            }
+        }
+        Err(LowerError::Unwritable { number: ground.face, kind: "face without an outer bound" })
     }
 
     fn remove_face(&mut self, face: FaceId) -> Result<(), LowerError> {

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, de};
 
 use crate::job::file::LengthSetting;
-use crate::job::file::selector::{NamePattern, RECORD, Selector, names_record};
+use crate::job::file::selector::{NamePattern, RECORD, Selector, typed};
 use crate::model::Origin;
 use crate::model::origin::ParseOriginError;
 use crate::units::Length;
@@ -158,11 +158,7 @@ impl std::str::FromStr for CurveSelector {
 
     /// A selector as typed on a command line: `#1042` or `D57`, or a table as in a job file.
     fn from_str(text: &str) -> Result<Self, String> {
-        let text = text.trim();
-        if names_record(text) {
-            return text.parse().map(Self::Record).map_err(|error: ParseOriginError| error.to_string());
-        }
-        crate::job::text::read_value(text).map_err(|e| e.to_string())
+        typed(text, Self::Record)
     }
 }
 

@@ -126,6 +126,8 @@ impl SideFile {
 pub enum SideFormat {
     /// Binary STL.
     Stl,
+    /// STL as text.
+    StlText,
     /// OFF with shared vertices.
     Off,
     /// 3MF with names and colours.

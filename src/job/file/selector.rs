@@ -140,9 +140,16 @@ impl TryFrom<String> for ColourSetting {
 /// Names of records in a job file, as a pattern of its schema.
 pub(in crate::job) const RECORD: &str = "^(#[0-9]+|D[0-9]+(/[0-9]+)?)$";
 
-/// Whether a text of the command line is the name of a record, and no table.
-pub(in crate::job) fn names_record(text: &str) -> bool {
-    text.starts_with(['#', 'D'])
+/// A selector as typed on a command line: the name of a record, or what a job file may have in its place.
+pub(in crate::job) fn typed<T: serde::de::DeserializeOwned>(
+    text: &str,
+    record: fn(Origin) -> T,
+) -> Result<T, String> {
+    let text = text.trim();
+    if text.starts_with(['#', 'D']) {
+        return text.parse().map(record).map_err(|error: ParseOriginError| error.to_string());
+    }
+    crate::job::text::read_value(text).map_err(|error| error.to_string())
 }
 
 impl std::str::FromStr for Selector {
@@ -150,11 +157,7 @@ impl std::str::FromStr for Selector {
 
     /// A selector as typed on a command line: `#1042` or `D57`, or a table as in a job file.
     fn from_str(text: &str) -> Result<Self, String> {
-        let text = text.trim();
-        if names_record(text) {
-            return text.parse().map(Self::Record).map_err(|error: ParseOriginError| error.to_string());
-        }
-        crate::job::text::read_value(text).map_err(|e| e.to_string())
+        typed(text, Self::Record)
     }
 }
 

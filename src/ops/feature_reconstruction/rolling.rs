@@ -237,10 +237,3 @@ fn measured(edge: Edge<'_>, blend: Blend, sections: usize) -> Rolled {
     }
     Rolled { blend, sections, deviation, angle }
 }
-
-/// Points of the limiting line at even shares.
-#[must_use]
-pub fn points_of_line(primary: &NurbsSurface, line: &NurbsCurve2, count: usize) -> Vec<Point3<f64>> {
-    let at = |k: usize| line.point_at(k as f64 / (count - 1) as f64);
-    (0..count).map(at).map(|p| primary.point(p.x, p.y)).collect()
-}
