@@ -9,13 +9,13 @@ use super::Fixture;
 const DOOR: &str = include_str!("../../samples/door/door.step");
 
 /// The door with a word in a comment, for a validator that acts on it.
-fn door(word: &str) -> String {
+pub fn door(word: &str) -> String {
     DOOR.replacen("ISO-10303-21;", &format!("ISO-10303-21;/*{word}*/"), 1)
 }
 
 /// A program in the place of FreeCAD that reads the word: it ends the worker that asks it, stops it for ever, refuses
 /// the part or accepts it.
-const JUDGE: &str = r#"#!/bin/sh
+pub const JUDGE: &str = r#"#!/bin/sh
 case "$(head -c 40 "$RESURF_PART")" in
   *crash*) kill -ABRT $PPID ;;
   *hang*) kill -STOP $PPID; sleep 100 ;;
@@ -24,7 +24,7 @@ case "$(head -c 40 "$RESURF_PART")" in
 esac
 "#;
 
-fn executable(path: &Path) {
+pub fn executable(path: &Path) {
     use std::os::unix::fs::PermissionsExt;
     std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o755)).expect("a script");
 }

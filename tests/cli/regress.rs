@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use super::Fixture;
+use super::batch::{JUDGE, door, executable};
 
 const JOB: &str = "version = 1\ninputs = [\"plate.step\"]\noutput = \"out/{stem}.{ext}\"\n\n\
     [[operation]]\nkind = \"constrained_scale\"\nfactors = [2, 2, 2]\n";
@@ -145,17 +146,23 @@ fn the_night_of_the_samples_is_one_command() {
     assert!(night().contains("nothing was done"));
 }
 
+#[cfg(unix)]
 #[test]
 fn what_a_limit_stopped_is_no_measure() {
-    let part = include_str!("../../samples/door-solid/door-solid.step");
-    let fixture = Fixture::new().file("parts/door.step", part);
-    let (_, said) = regress(&fixture, &["--update", "--timeout", "0.001"]);
-    assert!(said.starts_with("exit code: 6\n"), "{said}");
+    let fixture = Fixture::new().file("judge", JUDGE).file("parts/door.step", door("hang"));
+    executable(&fixture.path("judge"));
+    let judge = fixture.path("judge");
+    let fixture = fixture.variable("RESURF_FREECADCMD", &judge.to_string_lossy());
+    let stopped = ["--with", "freecad", "--timeout", "1"];
+    let (_, said) = regress(&fixture, &[&["--update"], &stopped[..]].concat());
+    assert!(said.starts_with("exit code: 6\n") && said.contains("door.step"), "{said}");
     assert!(!fixture.path("base.toml").exists());
-    let (_, said) = regress(&fixture, &["--update"]);
+    let fixture = fixture.file("parts/door.step", door("fine"));
+    let (_, said) = regress(&fixture, &["--update", "--with", "freecad"]);
     assert!(said.starts_with("exit code: 0\n"), "{said}");
-    let (_, said) = regress(&fixture, &["--timeout", "0.001"]);
-    assert!(said.starts_with("exit code: 6\n"), "{said}");
+    let fixture = fixture.file("parts/door.step", door("hang"));
+    let (parts, said) = regress(&fixture, &stopped);
+    assert!(said.starts_with("exit code: 6\n") && parts.len() == 1, "{said}");
 }
 
 #[cfg(unix)]

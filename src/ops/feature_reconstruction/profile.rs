@@ -47,7 +47,7 @@ pub const LEAST: usize = 20;
 const SPAN: f64 = 8.0;
 /// Weight of the third derivative (times the cube of a span) as a part of the mean diagonal, and a small part of that for
 /// every unknown.
-const STIFF: [f64; 2] = [1e-4, 1e-7];
+const STIFF: [f64; 2] = [1e-5, 1e-7];
 
 impl Profile {
     /// The height over `range` from points within it; `None` with fewer than [`LEAST`], or for an empty range.
